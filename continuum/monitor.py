@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from jointwave.cases.errors import StoppedError
 from jointwave.cases.geometry.periodic import of_all
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.continuum.plan import Plan
@@ -12,8 +11,7 @@ from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.evaluation import nodes_of_cells, places_of_nodes
 from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
-from jointwave.numerics.divergence import ENERGY, SPEED, audit, guard, speed_that
-from jointwave.numerics.instability import Divergence, stopped
+from jointwave.numerics.divergence import Guarded, check, guard, speed_that
 from jointwave.numerics.small_motion import (
     LARGEST,
     Moved,
@@ -37,35 +35,25 @@ class Monitor:
         self, plan: Plan, steps: Leapfrog | Implicit, start: np.ndarray | None = None
     ) -> None:
         """start : displacements at the start, m; None where at rest."""
-        self.found, _, choice, self.critical = plan
+        self.found, _, choice, critical = plan
         self.scene, self.steps, self.time = plan.found.scene, steps, choice.time
         self.explicit = choice.scheme == "explicit"
+        key = "numerics.continuum." + ("step_fraction" if self.explicit else "steps_per_period")
+        critical = critical if self.explicit else np.inf
+        self.run = Guarded(self.scene, "the continuum", key, self.time, critical)
         self.guard = guard(self._highest_speed(start))
 
     def check(self, first: int, last: int) -> None:
         """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
-        steps, stride = self.steps, self.time.stride
-        if self.scene.record.energy and self.explicit:  # the ledger of implicit steps is not exact
-            audit(self.guard, steps.samples.energy, first, last, stride)
-        speed = np.abs(steps.v)
-        found, (limit,) = self.guard.found, self.guard.limit.view(np.float64)
-        if found[0] < 0 and not speed.max(initial=0.0) <= limit:
-            found[:] = last * stride, SPEED, first * stride - 1
-        if found[0] >= 0:
-            raise self._diverged(speed.reshape(-1, self.found.body.components).max(axis=1))
+        steps, body = self.steps, self.found.body
+        exact = self.scene.record.energy and self.explicit  # the ledger of implicit steps is not
+        speed = np.abs(steps.v).reshape(-1, body.components).max(axis=1)
+        places = body.x[:, body.x.shape[1] // 2] if self.scene.is_column else body.x
+        energy = steps.samples.energy if exact else None
+        check(self.guard, self.run, (first, last), energy, speed, places)
         if matters(self.scene):
-            t = last * stride * self.time.dt
-            refuse_large_motion(self.scene, "the continuum", self._moved(), t, first)
-
-    def _diverged(self, speed: np.ndarray) -> StoppedError:
-        """Return the error of a run with these speeds of its nodes, m/s."""
-        step, what, sound = self.guard.found.tolist()
-        place = self.found.body.x[int(np.nan_to_num(speed, nan=np.inf).argmax())]
-        at = float(place[len(place) // 2]) if self.scene.is_column else tuple(place.tolist())
-        key = f"numerics.continuum.{'step_fraction' if self.explicit else 'steps_per_period'}"
-        seen = Divergence("the continuum", key, step, sound, what == ENERGY, at)
-        critical = self.critical if self.explicit else np.inf
-        return stopped(self.scene, self.time, critical, seen)
+            t = last * self.time.stride * self.time.dt
+            refuse_large_motion(self.scene, self.run.engine, self._moved(), t, first)
 
     def _moved(self) -> Moved | None:
         """Return the joint that has moved furthest over the size of its smaller block, or blocks

@@ -16,7 +16,7 @@ from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.geometry.periodic import Across, of_all
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import tensor
-from jointwave.cases.partition.pillar import blocks_of_pillar
+from jointwave.cases.partition.pillar import SIDES, blocks_of_pillar
 from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
@@ -25,7 +25,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.joints import resolved_joints
 from jointwave.continuum.mesh.boxes import along_edges, box_mesh, boxes_of, extents
 from jointwave.continuum.mesh.conforming import Conforming, marks_of
-from jointwave.continuum.mesh.given import ENDS, mesh_of_file
+from jointwave.continuum.mesh.given import mesh_of_file
 from jointwave.continuum.mesh.periodic import facing, fitted, matching_facets, matching_vertices
 from jointwave.continuum.mesh.simplices import are_simplices, own_cells, simplex_mesh
 from jointwave.continuum.mesh.size import element_size, elements_along, refuse_large_mesh
@@ -164,10 +164,8 @@ def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
         blocks = blocks_of_pillar(scene, dim, layers)
         joint = np.arange(calibrate(scene).block_count - 1)
         joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # a layer's two contacts have one
-        body, side = blocks.body, np.full(len(blocks.body.sides), 2)
-        y = body.means(body.corners_of_facets(), len(side))[:, dim // 2]
-        side[[y.argmin(), y.argmax()]] = 0, 1
-        marks = marks_of(blocks, np.where(np.isin(joint, resolved), joint, -1), side, ENDS)
+        resolved = np.where(np.isin(joint, resolved), joint, -1)
+        marks = marks_of(blocks, resolved, blocks.body.side, SIDES)
         each = np.append(elements_along(scene, model), np.ones(len(layers), int))
         mesh = _mesh_of_pillar(scene, blocks, each, size)
     else:

@@ -23,8 +23,7 @@ from jointwave.dem.prepare import blocks_of, clock_of, prepared
 from jointwave.dem.readings.snapshots import recorder
 from jointwave.dem.relaxation import start
 from jointwave.dem.system import BlockSystem
-from jointwave.numerics.divergence import ENERGY, SPEED, Guard, audit, guard
-from jointwave.numerics.instability import Divergence, stopped
+from jointwave.numerics.divergence import Guard, Guarded, check, guard
 from jointwave.numerics.small_motion import matters, refuse_large_motion
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.arrays import size_of
@@ -157,19 +156,12 @@ def look(
     """Check the motion after samples first .. last - 1, all of which may be invalid, and its energy
     where the ledger is exact. Raises StoppedError out of bounds, at the block that has the most
     energy."""
-    blocks, time, found = system.blocks, system.time, monitor.found
-    if samples.energy is not None and system.model.form.stages == 1:
-        audit(monitor, samples.energy, first, last, time.stride)
+    blocks, form = system.blocks, system.model.form
     masses, momenta = blocks.inertia, system.model.inertia
-    if system.model.form.finite:
+    if form.finite:
         masses = np.hstack([masses[:, :3], np.full_like(masses[:, 3:], masses[:, 3:].max())])
     fastest = (momenta / np.sqrt(masses) * np.abs(state.v[: len(masses)])).max(axis=1)  # sqrt(J)
-    if found[0] < 0 and not fastest.max(initial=0.0) <= monitor.limit[0]:
-        found[:] = last * time.stride, SPEED, first * time.stride - 1
-    if found[0] < 0:
-        return
-    step, what, sound = found.tolist()
-    place = tuple(blocks.centroid[int(np.nan_to_num(fastest, nan=np.inf).argmax())].tolist())
     key = "numerics.dem.step_fraction"
-    seen = Divergence("the rigid blocks", key, step, sound, what == ENERGY, place)
-    raise stopped(blocks.scene, time, blocks.critical, seen)
+    run = Guarded(blocks.scene, "the rigid blocks", key, system.time, blocks.critical)
+    energy = samples.energy if form.stages == 1 else None
+    check(monitor, run, (first, last), energy, fastest, blocks.centroid)

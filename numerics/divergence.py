@@ -1,16 +1,23 @@
-"""The divergence monitor, which stops a run that exceeds its bounds.
+"""The divergence monitor, which stops a run that exceeds its bounds, and its one-line error.
 
 Speeds cannot exceed what all forces together can cause, and energy cannot increase without work.
 """
+
+from __future__ import annotations
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from jointwave.cases.errors import StoppedError
+from jointwave.cases.sampling import Clock
+from jointwave.cases.scene_type import AnyScene
+
 EVERY = 96  # steps before a sample of too much energy that are not trusted either
 RUNAWAY = 100.0  # over the speed that forces can cause: leapfrog overshoots at the critical step
 CREATED = 0.1  # of the largest term of the ledger: more than any bounded run of any scheme gains
 LAST_DIGITS = 1e-8  # of the ledger's initial terms, from which small changes are differences
+HUGE = 1e100  # an amplitude whose square overflows
 
 SPEED, ENERGY = 0, 1  # the exceeded bound
 
@@ -27,6 +34,17 @@ class Guard(NamedTuple):
     limit: np.ndarray
     peak: np.ndarray
     found: np.ndarray
+
+
+class Guarded(NamedTuple):
+    """A run: its scene, its engine in words, the key that decides its step, its clock, and the
+    critical step, s."""
+
+    scene: AnyScene
+    engine: str
+    key: str
+    time: Clock
+    critical: float
 
 
 def guard(speeds: Any) -> Guard:
@@ -49,6 +67,57 @@ def audit(guard: Guard, energy: np.ndarray, first: int, last: int, stride: int) 
         n, found = (first + int(lost.argmax())) * stride, guard.found
         if found[0] < 0 or n < found[0]:
             found[:] = n, ENERGY, n - EVERY - 1
+
+
+def check(
+    guard: Guard,
+    run: Guarded,
+    samples: tuple[int, int],
+    energy: np.ndarray | None,
+    speed: np.ndarray,
+    places: np.ndarray,
+) -> None:
+    """Raise StoppedError, with the valid samples, where a run leaves its bounds in samples
+    first .. last - 1.
+
+    energy : the ledger [term, sample], None where it is not exact. speed : largest ones of places
+    [n] after these samples, as the guard's limit. places : [n, d], or [n] of y, m.
+    """
+    (first, last), stride, found = samples, run.time.stride, guard.found
+    if energy is not None:
+        audit(guard, energy, first, last, stride)
+    if found[0] < 0 and not speed.max(initial=0.0) <= guard.limit[0]:
+        found[:] = last * stride, SPEED, first * stride - 1
+    if found[0] >= 0:
+        raise _stopped(run, found.tolist(), places[int(np.nan_to_num(speed, nan=np.inf).argmax())])
+
+
+def _stopped(run: Guarded, found: list[int], place: Any) -> StoppedError:
+    """Return the error of a run by a guard's finding; place : of the fastest point, m."""
+    (step, what, sound), scene, dt = found, run.scene, run.time.dt
+    name = f"{scene.where}, {scene.name}" if scene.name else scene.where
+    at = f"y = {place:.6g}" if place.ndim == 0 else f"[{', '.join(f'{x:.6g}' for x in place)}]"
+    error = StoppedError(
+        f"{name}: {run.engine} {'gained energy' if what == ENERGY else 'diverged'} at t = "
+        f"{step * dt:.6g} s, step {step} of {dt:.4g} s, fastest at {at} m: {_cause(run)}"
+    )
+    error.samples = max(0, sound) // run.time.stride + 1
+    return error
+
+
+def _cause(run: Guarded) -> str:
+    dt, critical = run.time.dt, run.critical
+    if dt > 0.9999 * critical:
+        return (
+            f"the step is {dt / critical:.4g} times the critical step {critical:.4g} s; "
+            f"set {run.key} to at most 0.9"
+        )
+    if any(abs(one.amplitude or 0.0) > HUGE for one in run.scene.pulses):
+        return "numbers overflow; use a smaller load.amplitude"
+    return (
+        "joints open, close, stiffen or slide within a step, or the scene exceeds the limits of "
+        f"the scheme; {'halve' if run.key.endswith('fraction') else 'double'} {run.key}"
+    )
 
 
 def speed_that(*motions: float) -> float:

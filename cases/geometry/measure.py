@@ -222,3 +222,10 @@ def least_angles(body: Complex, half: Halves) -> np.ndarray:
     angle = 180.0 - np.degrees(2 * np.arctan2(*sine))
     np.minimum.at(found, rows[pair, 0], angle)
     return found
+
+
+def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return tensors [n, d, d] of a value along the normal and another across it, [n, 2]."""
+    along = np.einsum("qi,qj->qij", normal, normal)
+    across = np.eye(normal.shape[1]) - along
+    return values[:, 0, None, None] * along + values[:, 1, None, None] * across

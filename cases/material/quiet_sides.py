@@ -8,6 +8,7 @@ from math import isfinite
 
 import numpy as np
 
+from jointwave.cases.geometry.measure import along_and_across
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import compliant, impedance, stiffness
 from jointwave.cases.material.jointed_rock import JointedRock
@@ -34,13 +35,6 @@ def impedances(scene: AnyScene, normals: np.ndarray, region: np.ndarray) -> np.n
             pair = np.array([[rock.p_impedance, rock.s_impedance]])
             found[there] = along_and_across(normals[there], pair.repeat(there.sum(), axis=0))
     return found
-
-
-def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return tensors [n, d, d] of a value along the normal and another across it, [n, 2]."""
-    along = np.einsum("qi,qj->qij", normal, normal)
-    across = np.eye(normal.shape[1]) - along
-    return values[:, 0, None, None] * along + values[:, 1, None, None] * across
 
 
 def borne(scene: AnyScene, normals: np.ndarray) -> np.ndarray:

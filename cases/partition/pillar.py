@@ -13,6 +13,8 @@ from jointwave.cases.geometry.sets import SPREAD
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import Part
 
+#: Sides of a pillar: its ends, and those along it.
+SIDES = "start", "end", "sides"
 TOLERANCE = 1e-6  # of the thinnest block, below which points are one point
 
 
@@ -23,7 +25,8 @@ def blocks_of_pillar(
     space: then y runs along it, and its axis is x = z = 0.
 
     dim : 1 to 3. `joint_set` of a contact is 0 of [joints], 1 + k of soft layer k, and NO_SET where
-    it is no joint; `body.region` of a block is the index of its part in `scene.parts`. layers :
+    it is no joint; `body.region` of a block is the index of its part in `scene.parts`, `side` of a
+    facet of the boundary one in SIDES. layers :
     thickness (m) of joints that are blocks of their own, half of it on either side, regions after
     the parts, without joints on either side.
     """
@@ -47,7 +50,11 @@ def blocks_of_pillar(
     body = cut(box(low, high), planes, tolerance).body
     inner, joint_set = body.inner, body.joint_set.copy()
     joint_set[inner] = law[body.sides[inner].min(axis=1)]
-    return blocks_of(replace(body, joint_set=joint_set, region=region), tolerance, in_rows=False)
+    side = np.full(len(body.sides), 2)
+    place = body.means(body.corners_of_facets(), len(side))[:, along]
+    side[[place.argmin(), place.argmax()]] = 0, 1
+    body = replace(body, joint_set=joint_set, region=region, side=side)
+    return blocks_of(body, tolerance, in_rows=False)
 
 
 def block_ends(scene: Scene) -> np.ndarray:

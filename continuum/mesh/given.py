@@ -16,6 +16,7 @@ from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.relations import merged
 from jointwave.cases.gmsh_file import MeshError, Tagged, read_tagged
 from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.partition.pillar import SIDES
 from jointwave.cases.run_memory import refuse_beyond_memory
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.mesh.conforming import (
@@ -33,7 +34,6 @@ from jointwave.continuum.mesh.size import body_bytes
 PLACE = 1e-6  # of the pillar's length and side: tolerance of the file's dimensions
 APART = 1e-4  # of the shortest distance in a cell: vertices of two sides of a joint that are one
 DIMENSION = {kind: dim for kinds in (BOXES, SIMPLICES) for dim, kind in kinds.items()}
-ENDS = ("start", "end", "along")  #: sides of a pillar: its ends, and those along it
 KEY = "numerics.continuum.mesh"  #: the key of the scene
 
 
@@ -87,7 +87,7 @@ def mesh_of_file(
     column = np.full(p.block_count + 2, -1)
     column[resolved] = resolved
     side = np.append(np.full(p.block_count - 1, -1), [0, 1, 2])
-    return blocks_of(body, PLACE * p.side, in_rows=False), mesh, Marks(column, side, ENDS)
+    return blocks_of(body, PLACE * p.side, in_rows=False), mesh, Marks(column, side, SIDES)
 
 
 def _mesh(tagged: Tagged, p: Properties) -> Conforming:

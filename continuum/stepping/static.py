@@ -111,7 +111,8 @@ def _creep(scene: AnyScene, own: _Static, done: float) -> tuple[Outcome, int]:
         drag *= EASED if not outcome.converged else 1 / EASED if drag > least else 1
     if far or moves > PATIENCE / 2:
         why = f"{own.fastest()}; it slides, tips or is unsupported"
-        raise _refusal(scene, f"no static state beyond {done:.3g} of", why)
+        carried = f"beyond {done:.3g} of" if done else "under"
+        raise _refusal(scene, f"no static state {carried}", why)
     why = f"an out-of-balance ratio of {best / own.size:.1e} stays after {corrections} corrections"
     raise _refusal(scene, "has not come to rest under", why)
 

@@ -12,7 +12,7 @@ from jointwave.cases.effects import is_spatial
 from jointwave.cases.geometry.blocks import Blocks as Cut
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.calibrate import Properties, calibrate
-from jointwave.cases.partition.pillar import blocks_of_pillar
+from jointwave.cases.partition.pillar import SIDES, blocks_of_pillar
 from jointwave.cases.run_memory import refuse_beyond_memory
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.scene import Scene
@@ -21,7 +21,7 @@ from jointwave.dem.contacts.faces import Contacts, contacts_of
 from jointwave.dem.contacts.law import Columns, columns_of
 from jointwave.dem.readings.sections import Sections, sections_of
 from jointwave.dem.readings.snapshots import Bodies
-from jointwave.dem.sides.ends import SIDES, surroundings_of, under_weight
+from jointwave.dem.sides.ends import surroundings_of, under_weight
 from jointwave.results.subcells import CORNERS
 
 CUT = {1: 400, 3: 12_000}  # bytes of a block while a pillar is cut
@@ -93,9 +93,8 @@ def blocks_of(scene: Scene) -> BlocksOfPillar:
 
 
 def cut_of(scene: Scene, dim: int) -> Cut:
-    """Return the blocks of a pillar, whole in any number of dimensions, with `ends.SIDES`."""
+    """Return the blocks of a pillar, whole in any number of dimensions."""
     cut, section = blocks_of_pillar(scene, dim), scene.pillar.side ** (3 - dim)
-    along = cut.boundary.normal[:, dim // 2]
     contacts, boundary = (
         replace(one, area=section * one.area, second_moment=section * one.second_moment)
         for one in (cut.contacts, cut.boundary)
@@ -105,7 +104,7 @@ def cut_of(scene: Scene, dim: int) -> Cut:
         volume=section * cut.volume,
         second_moment=section * cut.second_moment,
         contacts=contacts,
-        boundary=replace(boundary, side=np.select([along < -0.5, along > 0.5], [0, 1], 2)),
+        boundary=boundary,
     )
 
 

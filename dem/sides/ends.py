@@ -11,10 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.geometry.measure import along_and_across
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.jointed_rock import JointedRock
-from jointwave.cases.material.quiet_sides import along_and_across
+from jointwave.cases.partition.pillar import SIDES
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import LEAN
 from jointwave.dem.contacts.faces import frames_of, jumps_of, springs_of
@@ -25,8 +26,6 @@ from jointwave.dem.sides.surroundings import EndSpring, Surroundings
 from jointwave.joints.ends import half_spring
 from jointwave.joints.law import Law, parts_of
 from jointwave.joints.normal import gap_under
-
-SIDES = "start", "end", "sides"
 
 
 def surroundings_of(

@@ -50,7 +50,7 @@ def test_joints_across_the_pillar(kind, doubled, given):
         assert joints.weight[own].sum() == pytest.approx(section, rel=ROUND)
         assert joints.place[own, 1] == pytest.approx(y, rel=ROUND)
     assert joints.frame[:, 0] == pytest.approx(np.tile(np.eye(dim)[1], (len(own), 1)), abs=1e-9)
-    areas = {"start": section, "end": section, "along": 2 * (dim - 1) * 1.5 * 0.4 ** (dim - 2)}
+    areas = {"start": section, "end": section, "sides": 2 * (dim - 1) * 1.5 * 0.4 ** (dim - 2)}
     for name, area in areas.items():
         assert sides[name].weight.sum() == pytest.approx(area, rel=ROUND)
     assert sides["start"].place[:, 1] == pytest.approx(0, abs=1e-15)

@@ -8,10 +8,10 @@ from jointwave import cases
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.cut import cut, one_plane
+from jointwave.cases.geometry.measure import along_and_across
 from jointwave.cases.histories import Ricker
 from jointwave.cases.incident import FreeField, PlaneWave
 from jointwave.cases.loads import history_of
-from jointwave.cases.material.quiet_sides import along_and_across
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.partition.scene import blocks_of_scene, shape_of
 from jointwave.cases.sampling import Clock

@@ -30,7 +30,7 @@ from scipy.sparse import bsr_array, csr_array, diags, eye, hstack, vstack
 
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import OUTSIDE
-from jointwave.cases.material.quiet_sides import along_and_across
+from jointwave.cases.geometry.measure import along_and_across
 
 #: e_k x e_i as [i, :, k]: what a rotation about k moves at the end of an arm along i.
 TURN = np.cross(np.eye(3)[None], np.eye(3)[:, None]).swapaxes(1, 2)

@@ -14,7 +14,7 @@ def test_what_a_stopped_run_computed_is_written_beside_its_result(pillar, tmp_pa
     scene, result = pillar(**KEYS), tmp_path / "continuum-jointed.nc"
     result.write_bytes(b"CDF\2 of an earlier run")
     (job,), _ = jobs.plan([scene], [("continuum", "jointed")], tmp_path)
-    monkeypatch.setattr("jointwave.continuum.stepping.balance.MOST_ITERATIONS", 0)
+    monkeypatch.setattr("jointwave.continuum.stepping.newton.MOST_ITERATIONS", 0)
     with pytest.raises(StoppedError, match=r"do not converge .*; what was computed is in .*\.nc$"):
         run.execute([job], lambda fraction: None)
     assert result.read_bytes() == b"CDF\2 of an earlier run"
