@@ -44,8 +44,9 @@ def render(page: dict[str, Any], out: Path) -> str:
 
 
 def picture(file: Path) -> str:
-    """Return an SVG file as an address of its own."""
-    return f"data:image/svg+xml;base64,{b64encode(file.read_bytes()).decode('ascii')}"
+    """Return an image, SVG or GIF, as an address of its own."""
+    kind = {".svg": "svg+xml", ".gif": "gif"}[file.suffix]
+    return f"data:image/{kind};base64,{b64encode(file.read_bytes()).decode('ascii')}"
 
 
 def unbroken(text: str) -> str:

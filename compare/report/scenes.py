@@ -39,7 +39,7 @@ PAPER = Path(cases.__file__).parent / "guo-li-2002"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)
-TAKEN = {"", "overview", "made", "rock-masses", "peers", "effects", "stability", "motion"}
+TAKEN = {"", "overview", "made", "rock-masses", "peers", "effects", "stability", "motion", "film"}
 
 
 class SceneRequest(NamedTuple):

@@ -10,9 +10,13 @@ import pandas as pd
 from jointwave import cases, dem
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import pillar_of
-from jointwave.compare.engines import Progress
-from jointwave.compare.figures.animation.frame import draw_snapshots
+from jointwave.compare.engines import Progress, label_of, solve
+from jointwave.compare.figures.animation.frame import PIXELS, Frame, draw_snapshots
+from jointwave.compare.figures.animation.settings import settings_for
+from jointwave.compare.figures.animation.snapshots import take
+from jointwave.compare.figures.animation.video import write_video
 from jointwave.compare.figures.export import save
+from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.report import peers
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.compare.scenes import find
@@ -23,12 +27,15 @@ from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.scattering import TITLES
 from jointwave.compare.studies.store import Pool
 from jointwave.compare.studies.work_precision import REPORTED
+from jointwave.compare.text import percent
 from jointwave.results.snapshots import snapshots_of
 
 APPENDIX = ("convergence", "uniform-chain")  # the studies of steps and elements alone
 BLOW = "beyond/eccentric-blow"  # the scene of the snapshots, and its changes
 SEEN = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
-DIAGRAMS = len(TITLES) + len(REPORTED) + 3  # effects, hard cases, snapshots
+SLIDE, EXACT = "rock-mass/sliding-joint", "normal-incidence"  # the scene of the film, its solution
+FRAMES, RATE = 41, 8  # of the film, in all and a second
+DIAGRAMS = len(TITLES) + len(REPORTED) + 4  # effects, hard cases, snapshots, film
 HARD = 0.5  # of the progress, where the hard cases are asked for
 
 
@@ -61,6 +68,7 @@ def sections(
         about = {"contents": "Hard cases", "appendix": True}
         yield section("hard", found, f"jointwave study {hard_cases.NAME}", **about)
     yield _snapshots(out)
+    yield film(out)
     progress(1.0)
 
 
@@ -102,3 +110,24 @@ def _snapshots(out: Path) -> dict[str, Any]:
     empty = pd.DataFrame(), (), (), ()
     about = Summary("motion", title, *empty, figure=drawn, note=note, about=place)
     return section("motion", about, "", contents="The pillar in motion")
+
+
+def film(out: Path) -> dict[str, Any]:
+    """Film a rock mass in space by both engines, and say how far they are from its exact motion."""
+    scene = cases.load_variant(find(SLIDE), "", {})
+    simulated = take(scene, scene.time.duration / (FRAMES - 1))
+    exact = solve(EXACT, simulated.scene)
+    apart = [
+        f"{label_of(name)}: {percent(misfit(result, exact), 2)} % from the {label_of(EXACT)}"
+        for name, result in simulated.results.items()
+    ]
+    frame = Frame(simulated, settings_for(simulated.scene, simulated.found))
+    images = (frame.image(i) for i in range(FRAMES))
+    file = write_video(out / "figures" / "sliding-joint.gif", images, PIXELS, RATE)
+    note = (
+        "The wave moves rock along no axis. The joint passes the shear that friction can carry and "
+        "slips under the rest: rock above it moves less, and what does not pass is reflected."
+    )
+    table = pd.DataFrame()
+    about = Summary("film", scene.title, table, apart, (), [file], note=note)
+    return section("film", about, f"jointwave animate {SLIDE}", contents="A film in space")
