@@ -1,4 +1,4 @@
-"""What commands read: scenes with changed keys, their warnings, and results that are stored."""
+"""Input of the commands: scenes with changed keys, their warnings, and stored results."""
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path

@@ -1,1 +1,1 @@
-"""What is read of blocks: waveforms, sections, snapshots."""
+"""Readings of rigid blocks: waveforms, sections, snapshots."""

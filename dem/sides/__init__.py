@@ -1,1 +1,1 @@
-"""What acts on blocks from outside: sides, ends, loads, waves and moving bases."""
+"""Actions on blocks from outside: sides, ends, loads, waves and moving bases."""

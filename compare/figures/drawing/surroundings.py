@@ -1,4 +1,4 @@
-"""What stands around the blocks of a rock mass in a drawing: receivers, waves, loads, gravity and
+"""Surroundings of the blocks of a rock mass in a drawing: receivers, waves, loads, gravity and
 prestress."""
 
 from collections.abc import Iterator
