@@ -1,4 +1,4 @@
-"""The one form of every result: written to NetCDF and read back without loss."""
+"""The one form of every result: its axes, units and scene, written to NetCDF without loss."""
 
 import json
 from pathlib import Path
@@ -7,111 +7,109 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from jointwave.cases import Scene, load
+from jointwave.cases import load
 from jointwave.cases.sampling import sample_times
-from jointwave.results.arrays import size_of
-from jointwave.results.dataset import (
-    ALL_TERMS,
-    AT_REST,
-    DIMENSIONS,
-    TERMS,
-    dataset,
-    energy_residual,
-    imbalance,
-    scene_hash,
-)
-from jointwave.results.labels import LABELS
-from jointwave.results.rock_mass import TERMS as ROCK_TERMS
+from jointwave.results.dataset import ALL_TERMS, AT_REST, TERMS, dataset, imbalance, scene_hash
 from jointwave.results.rock_mass import rock_mass_dataset
 
-CAVERN = Path(__file__).parents[2] / "cases/rock-mass/cavern.toml"
+CASES = Path(__file__).parents[2] / "cases"
 POINTS = {"record.velocity": [19.75, 20.25]}
+ACROSS = POINTS | {"load.direction": [1.0, 0.0, 0.0]}
+UNITS = {
+    "Pa": {"stress", "shear", "traction", "stress_error", "shear_error"},
+    "m/s": {"velocity", "velocity_error"},
+    "m": {"displacement", "displacement_error", "gap", "slip", "stress_y", "velocity_y"}
+    | {f"{kind}_{axis}" for kind in ("point", "joint_point") for axis in "xyz"},
+    "rad": {"rotation", "rotation_error"},
+    "J": {"energy"},
+    "s": {"time"},
+}
+UNIT = {name: unit for unit, names in UNITS.items() for name in names}
 
 
-@pytest.fixture
-def result(scene_with):
-    """A result of random numbers with every variable."""
-    scene, draw = scene_with(**POINTS), np.random.default_rng(1).normal
-    times = sample_times(scene)
-    one, two, terms = (1, len(times)), (2, len(times)), (len(TERMS), len(times))
-    return dataset(
-        scene,
-        "dem",
-        times,
-        draw(size=one),
-        draw(size=two),
-        draw(size=two),
-        draw(size=terms),
-        dt=1e-6,
-    )
+def axial(scene, draw, times):
+    """A result of motion along the axis: each waveform with the bound of its error."""
+    n, errors = len(times), {"stress": np.array([2.0]), "velocity": np.array([3.0, 4.0])}
+    waves, energy = (draw(size=(points, n)) for points in (1, 2, 2)), draw(size=(len(TERMS), n))
+    return dataset(scene, "dem", times, *waves, energy, errors=errors, known_until=0.01, dt=1e-6)
 
 
-def test_netcdf_round_trip(result, tmp_path):
-    result.to_netcdf(tmp_path / "dem.nc", engine="scipy")
+def across(scene, draw, times):
+    """A result of motion across the axis, with the bounds of its errors."""
+    n, sizes = len(times), {"stress": (1,), "shear": (1, 2), "velocity": (2, 3)}
+    sizes |= {"displacement": (2, 3), "rotation": (2, 3)}
+    values = {name: draw(size=(size[0], n, *size[1:])) for name, size in sizes.items()}
+    errors = {name: np.ones(size) for name, size in sizes.items()}
+    energy = draw(size=(len(ALL_TERMS), n))
+    own = {"energy": energy, "terms": ALL_TERMS, "errors": errors, "dt": 1e-6}
+    return dataset(scene, "dem", times, **values, **own)
+
+
+def in_space(scene, draw, times):
+    """A result of a rock mass in space."""
+    points, joints, n = len(scene.record.points), len(scene.record.joints), len(times)
+    shapes = {"velocity": (points, n, 3), "stress": (points, n, 6)}
+    shapes |= {"traction": (joints, n, 3), "gap": (joints, n), "slip": (joints, n, 2)}
+    values = {name: draw(size=shape) for name, shape in shapes.items()}
+    energy = draw(size=(len(ALL_TERMS), n))
+    return rock_mass_dataset(scene, "dem", times, values, energy, dt=1e-6)
+
+
+@pytest.fixture(params=[axial, across, in_space])
+def made(request, scene_with):
+    """A scene of each kind, and a result of random numbers with every variable."""
+    if request.param is in_space:
+        (scene,) = load(CASES / "rock-mass/cavern.toml")
+    else:
+        scene = scene_with(**(POINTS if request.param is axial else ACROSS))
+    return scene, request.param(scene, np.random.default_rng(1).normal, sample_times(scene))
+
+
+def test_netcdf_round_trip(made, tmp_path):
+    made[1].to_netcdf(tmp_path / "dem.nc", engine="scipy")
     with xr.open_dataset(tmp_path / "dem.nc", engine="scipy") as back:
-        xr.testing.assert_identical(back.load(), result)
+        xr.testing.assert_identical(back.load(), made[1])
 
 
-def test_every_variable_has_a_unit(result):
-    units = {name: result[name].attrs["units"] for name in result.data_vars}
-    assert units == {"stress": "Pa", "velocity": "m/s", "displacement": "m", "energy": "J"}
+def test_every_variable_has_a_long_name_and_every_quantity_its_unit(made):
+    """What xarray's plots write on their axes."""
+    for name, variable in {**made[1].coords, **made[1].data_vars}.items():
+        assert variable.attrs["long_name"], name
+        assert variable.attrs.get("units") == UNIT.get(name), name
+        assert (name in UNIT) == (variable.dtype.kind == "f"), name
 
 
-def test_every_variable_and_coordinate_has_a_long_name(result):
-    """And a unit, if it is a quantity: what xarray's plots write on their axes."""
-    for name, variable in {**result.coords, **result.data_vars}.items():
-        long_name, unit = LABELS[name]
-        assert variable.attrs == {"long_name": long_name} | ({"units": unit} if unit else {})
-        assert bool(unit) == (variable.dtype.kind == "f")
+def test_the_scene_stands_behind_what_is_shorter(made):
+    """It is longer than a screen, and loads again (tests/test_jointwave.py)."""
+    attributes = made[1].attrs
+    assert list(attributes)[-1] == "scene" and attributes["dt"] == 1e-6
+    assert "energy ledger" in json.loads(attributes["effects"])
 
 
-def test_the_longest_attribute_comes_last(result):
-    assert max(result.attrs, key=lambda name: len(str(result.attrs[name]))) == "scene"
-    assert list(result.attrs)[-1] == "scene"
+def test_motion_and_stress_have_named_axes(made):
+    scene, found = made
+    axes = {name: values.values.tolist() for name, values in found.coords.items()}
+    if "stress_component" in axes:
+        assert axes["stress_component"] == ["xx", "yy", "zz", "xy", "yz", "xz"]
+        assert axes["joint_axis"] == ["n", "strike", "dip"]
+        assert axes["slip_axis"] == ["strike", "dip"]
+        at = np.stack([axes[f"point_{axis}"] for axis in "xyz"], axis=1)
+        assert at.tolist() == scene.record.points
+    elif "across" in axes:
+        assert found["shear"].dims == ("stress_y", "time", "across")
+        assert found["rotation"].dims == ("velocity_y", "time", "axis")
+        assert found["rotation_error"].dims == ("velocity_y", "axis")
+        assert axes["across"] == ["x", "z"]
+    is_axial = "stress_y" in axes and "across" not in axes
+    assert axes["axis"] == (["y"] if is_axial else ["x", "y", "z"])
+    assert axes["term"] == list(TERMS if is_axial else ALL_TERMS)
 
 
-def test_a_result_holds_its_scene(result, scene_with):
-    held = Scene.model_validate_json(result.attrs["scene"])
-    assert held.model_dump() == scene_with(**POINTS).model_dump()
-    assert json.loads(result.attrs["effects"]) == ["energy ledger"]
-    assert result.attrs["dt"] == 1e-6
-
-
-def test_displacement_and_energy_are_absent_when_not_given(scene_with):
+def test_what_is_not_given_is_absent(scene_with):
     scene = scene_with()
     n = len(sample_times(scene))
     bare = dataset(scene, "images", sample_times(scene), np.zeros((1, n)), np.zeros((0, n)))
     assert set(bare.data_vars) == {"stress", "velocity"}
-    assert bare.velocity.dims == ("velocity_y", "time", "axis")
-
-
-def test_a_computed_result_holds_its_error_by_waveform(pillar, tmp_path):
-    """Of axial motion with its one axis."""
-    scene = pillar(record__energy=False, record__stress=[5.0], record__velocity=[1, 2])
-    n = len(sample_times(scene))
-    errors = {"stress": np.array([2.0]), "velocity": np.array([3.0, 4.0])}
-    waves = np.zeros((1, n)), np.zeros((2, n))
-    found = dataset(scene, "lattice", sample_times(scene), *waves, errors=errors, known_until=0.01)
-    assert found["stress_error"].values.tolist() == [2.0]
-    assert found["velocity_error"].dims == ("velocity_y", "axis")
-    assert found["velocity_error"].values[:, 0].tolist() == [3.0, 4.0]
-    assert found["velocity_error"].attrs["units"] == "m/s" and found.attrs["known_until"] == 0.01
-    assert "displacement_error" not in found
-    found.to_netcdf(tmp_path / "own.nc", engine="scipy")
-    with xr.open_dataset(tmp_path / "own.nc", engine="scipy") as back:
-        xr.testing.assert_identical(back.load(), found)
-
-
-def test_the_bounds_of_a_spatial_result_have_its_axes(scene_with):
-    scene = scene_with(**POINTS, **{"load.direction": [1.0, 0.0, 0.0]})
-    n = len(sample_times(scene))
-    waves = np.zeros((1, n)), np.zeros((2, n, 3))
-    sizes = {"stress": 1, "shear": (1, 2), "velocity": (2, 3), "displacement": (2, 3)}
-    errors = {name: np.ones(size) for name, size in (sizes | {"rotation": (2, 3)}).items()}
-    found = dataset(scene, "own", sample_times(scene), *waves, waves[1], errors=errors)
-    for name in errors:
-        assert found[f"{name}_error"].dims == tuple(d for d in DIMENSIONS[name])
-        assert found[f"{name}_error"].shape == errors[name].shape
 
 
 def test_hash_follows_every_number(scene_with):
@@ -120,9 +118,8 @@ def test_hash_follows_every_number(scene_with):
     assert len({*same, other}) == 2
 
 
-def test_hash_follows_the_samples_of_a_history(tmp_path, paper_folder):
-    text = (paper_folder.parent / "beyond" / "blast-history.toml").read_text()
-    (tmp_path / "scene.toml").write_text(text)
+def test_hash_follows_the_samples_of_a_history(tmp_path):
+    (tmp_path / "scene.toml").write_text((CASES / "beyond/blast-history.toml").read_text())
     hashes = set()
     for stress in (1.0, 2.0):
         (tmp_path / "blast-two-delays.csv").write_text(f"0,0\n0.01,{stress}\n")
@@ -130,65 +127,36 @@ def test_hash_follows_the_samples_of_a_history(tmp_path, paper_folder):
     assert len(hashes) == 2
 
 
-@pytest.fixture
-def spatial(scene_with):
-    """A result of random numbers of a scene that moves across its axis."""
-    scene = scene_with(**POINTS, **{"load.direction": [1.0, 0.0, 0.0]})
-    draw, times = np.random.default_rng(2).normal, sample_times(scene)
-    n = len(times)
-    return dataset(
-        scene,
-        "dem",
-        times,
-        draw(size=(1, n)),
-        draw(size=(2, n, 3)),
-        draw(size=(2, n, 3)),
-        draw(size=(len(ALL_TERMS), n)),
-        shear=draw(size=(1, n, 2)),
-        rotation=draw(size=(2, n, 3)),
-        terms=ALL_TERMS,
-    )
+RISE = np.linspace(0, 1, 5)
+LEDGERS = {
+    "a quarter of the work is missing": ({"kinetic": 3 * RISE, "work": 4 * RISE}, 0.25),
+    "closed": ({"kinetic": 3 * RISE, "viscous": RISE, "work": 4 * RISE}, 0.0),
+    "from a static state": (
+        {"kinetic": 2 * RISE, "elastic": 7 + RISE, "gravity": -3 + 0 * RISE, "work": 3 * RISE},
+        0.0,
+    ),
+    "from a static state, with a loss": (
+        {"kinetic": 1.7 * RISE, "elastic": 7 + RISE, "gravity": -3 + 0 * RISE, "work": 3 * RISE},
+        0.1,
+    ),
+    "a block slides down": (
+        {"kinetic": RISE, "friction": 3 * RISE, "gravity": 5 - 4 * RISE, "work": 0 * RISE},
+        0.0,
+    ),
+    "a block slides down, with a loss": (
+        {"kinetic": RISE, "friction": 2 * RISE, "gravity": 5 - 4 * RISE, "work": 0 * RISE},
+        0.25,
+    ),
+    "nothing moves": ({"kinetic": 0 * RISE, "work": 0 * RISE}, 0.0),
+}
 
 
-def test_a_spatial_result_has_three_axes(spatial):
-    assert spatial.axis.values.tolist() == ["x", "y", "z"]
-    assert spatial.velocity.dims == spatial.rotation.dims == ("velocity_y", "time", "axis")
-    assert spatial["shear"].dims == ("stress_y", "time", "across")
-    assert spatial.across.values.tolist() == ["x", "z"]
-    assert spatial["shear"].attrs["units"] == "Pa" and spatial.rotation.attrs["units"] == "rad"
-    assert spatial.term.values.tolist() == list(ALL_TERMS)
-
-
-def test_a_spatial_result_is_written_and_read(spatial, tmp_path):
-    spatial.to_netcdf(tmp_path / "dem.nc", engine="scipy")
-    with xr.open_dataset(tmp_path / "dem.nc", engine="scipy") as back:
-        xr.testing.assert_identical(back.load(), spatial)
-
-
-def test_axial_terms_are_among_all_terms_in_their_order():
-    assert [term for term in ALL_TERMS if term in TERMS] == list(TERMS)
-
-
-def test_energy_residual_is_the_largest_imbalance_over_the_largest_work(result):
-    energy = np.zeros(result.energy.shape)
-    energy[TERMS.index("work")] = np.linspace(0, 4, energy.shape[1])
-    energy[TERMS.index("kinetic")] = np.linspace(0, 3, energy.shape[1])
-    assert energy_residual(result.assign(energy=(result.energy.dims, energy))) == pytest.approx(
-        0.25
-    )
-    energy[TERMS.index("viscous")] = np.linspace(0, 1, energy.shape[1])
-    balanced = result.assign(energy=(result.energy.dims, energy))
-    assert energy_residual(balanced) == pytest.approx(0, abs=1e-15)
-
-
-def test_the_ledger_counts_from_the_first_sample():
-    """The energy of a static state was there before any work, whichever terms hold it."""
-    terms = ("kinetic", "elastic", "gravity", "work")
-    rise = np.linspace(0, 1, 5)
-    energy = np.stack([2 * rise, 7 + rise, -3 * np.ones(5), 3 * rise])
-    assert imbalance(energy, terms) == pytest.approx(0, abs=1e-15)
-    energy[0] -= 0.3 * rise
-    assert imbalance(energy, terms) == pytest.approx(0.1)
+@pytest.mark.parametrize("name", LEDGERS)
+def test_imbalance_is_over_the_largest_work_since_the_first_sample(name):
+    """Without any work, over the largest term."""
+    ledger, expected = LEDGERS[name]
+    found = imbalance(np.stack(list(ledger.values())), tuple(ledger))
+    assert found == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize("at_rest", [1e6, 1e9, 1e14, 1e20])
@@ -202,39 +170,3 @@ def test_the_round_off_of_what_is_at_rest_is_no_loss(at_rest):
     assert imbalance(energy) < 1e-3
     energy[1] -= 0.1 * rise * max(1.0, AT_REST * elastic[0])
     assert imbalance(energy) == pytest.approx(0.1, rel=0.01)
-
-
-def test_where_no_work_is_done_the_largest_term_is_the_scale():
-    """A block that slides down: its weight pays for motion and friction."""
-    terms = ("kinetic", "friction", "gravity", "work")
-    fall = np.linspace(0, 1, 5)
-    energy = np.stack([fall, 3 * fall, 5.0 - 4 * fall, 0 * fall])
-    assert imbalance(energy, terms) == pytest.approx(0, abs=1e-15)
-    energy[1] -= fall
-    assert imbalance(energy, terms) == pytest.approx(0.25)
-    assert imbalance(0 * energy, terms) == 0.0
-
-
-def test_size_is_that_of_all_arrays_in_nested_tuples():
-    """Absent parts and plain numbers hold nothing."""
-    parts = (np.zeros(3), None, 2.0, (np.zeros((2, 2), dtype=np.int32), (None, np.zeros(1))))
-    assert size_of(parts, np.zeros(5)) == 24 + 16 + 8 + 40
-
-
-def test_a_rock_mass_in_space_has_three_axes_and_six_stresses(tmp_path):
-    (scene,) = load(CAVERN)
-    points, joints, times = len(scene.record.points), len(scene.record.joints), sample_times(scene)
-    draw, n = np.random.default_rng(2).normal, len(times)
-    shapes = {"velocity": (points, n, 3), "stress": (points, n, 6)}
-    shapes |= {"traction": (joints, n, 3), "gap": (joints, n), "slip": (joints, n, 2)}
-    values = {name: draw(size=shape) for name, shape in shapes.items()}
-    found = rock_mass_dataset(scene, "dem", times, values, draw(size=(len(ROCK_TERMS), n)))
-    assert found.axis.values.tolist() == ["x", "y", "z"]
-    assert found.stress_component.values.tolist() == ["xx", "yy", "zz", "xy", "yz", "xz"]
-    assert found.joint_axis.values.tolist() == ["n", "strike", "dip"]
-    assert found.slip_axis.values.tolist() == ["strike", "dip"]
-    at = np.stack([found[f"point_{axis}"].values for axis in "xyz"], axis=1)
-    assert at.tolist() == scene.record.points and found.energy.attrs["units"] == "J"
-    found.to_netcdf(tmp_path / "dem.nc", engine="scipy")
-    with xr.open_dataset(tmp_path / "dem.nc", engine="scipy") as back:
-        xr.testing.assert_identical(back.load(), found)
