@@ -24,30 +24,34 @@ SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 def drawn(pillar):
     """Return a function that draws variants, solved by the exact chain, at a width (mm)."""
 
-    def draw(width, name="damped", size=8.0):
+    def draw(width, name="damped"):
         scenes = [pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.05)]
         scenes[1] = scenes[1].model_copy(update={"name": name})
         found = [
             Comparison(scene, dict.fromkeys(("lattice", "dem"), row_of_blocks.solve(scene)))
             for scene in scenes
         ]
-        return draw_solutions(found, False, printed(width, size))
+        return draw_solutions(found, False, printed(width, 8.0))
 
     return draw
 
 
 @pytest.mark.parametrize("width", [90.0, 190.0])
-def test_the_page_is_as_wide_as_asked(drawn, tmp_path, width):
-    """To 0.1 mm, in every format, and the same figure is the same file."""
+def test_the_page_is_as_wide_as_asked_and_needs_no_font(drawn, tmp_path, width):
+    """To 0.1 mm, in every format, and the same figure is the same file. A PDF holds its fonts as
+    TrueType, an SVG has outlines."""
     rc, names = printed(width, 8.0), ("a.pdf", "a.svg", "a.png", "b.pdf", "b.svg", "b.png")
     files = [write_drawing(tmp_path / name, drawn(width), "A title", rc) for name in names]
     pdf, svg, png = files[:3]
-    box = re.search(rb"/MediaBox \[ 0 0 ([\d.]+) [\d.]+ \]", pdf.read_bytes())
-    assert float(box[1]) * 25.4 / 72 == pytest.approx(width, abs=0.1)
-    points = ET.parse(svg).getroot().get("width").removesuffix("pt")
-    assert float(points) * 25.4 / 72 == pytest.approx(width, abs=0.1)
-    assert imread(png).shape[1] * 25.4 / 600 == pytest.approx(width, abs=0.1)
+    content, tree = pdf.read_bytes(), ET.parse(svg).getroot()
+    box = re.search(rb"/MediaBox \[ 0 0 ([\d.]+) [\d.]+ \]", content)
+    points = tree.get("width").removesuffix("pt")
+    widths = float(box[1]) / 72, float(points) / 72, imread(png).shape[1] / 600
+    assert [25.4 * inches for inches in widths] == pytest.approx(3 * [width], abs=0.1)
     assert [file.read_bytes() for file in files[:3]] == [file.read_bytes() for file in files[3:]]
+    assert content.count(b"/FontFile2") == content.count(b"/Type /FontDescriptor") > 0
+    assert b"/Type3" not in content
+    assert not list(tree.iter("{http://www.w3.org/2000/svg}text"))
 
 
 @pytest.mark.parametrize("width", [90.0, 190.0])
@@ -59,17 +63,6 @@ def test_nothing_is_cut_off_or_overprinted(drawn, collisions, width, name):
     assert len(figure.axes) == 4 and len(across) == (1 if width == 90 else 2)
     sizes = {t.get_fontsize() for t in figure.findobj(Text) if t.get_text().strip()}
     assert sizes == {8.0}
-
-
-def test_a_pdf_holds_its_fonts_as_true_type_and_an_svg_outlines(drawn, tmp_path):
-    """Neither needs an installed font."""
-    pdf, svg = tmp_path / "a.pdf", tmp_path / "a.svg"
-    for path in (pdf, svg):
-        write_drawing(path, drawn(90.0), "A title", printed(90.0, 8.0))
-    content = pdf.read_bytes()
-    assert content.count(b"/FontFile2") == content.count(b"/Type /FontDescriptor") > 0
-    assert b"/Type3" not in content
-    assert not list(ET.parse(svg).getroot().iter("{http://www.w3.org/2000/svg}text"))
 
 
 def test_what_is_asked_for_is_drawn(pillar):

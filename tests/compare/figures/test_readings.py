@@ -1,6 +1,7 @@
-"""The table of readings from velocities: numbers of known pulses, in print and as JSON."""
+"""Readings of velocities against closed forms: their table, and the picture along a row."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,37 +9,49 @@ import pytest
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.read import load_tables
 from jointwave.compare.cli.compare import show_comparisons
-from jointwave.compare.engines import solve
+from jointwave.compare.figures.charts.propagation import curves_of, propagation
 from jointwave.compare.figures.tables import READINGS, reading_frame
 from jointwave.compare.misfit.alignment import align_curve
 from jointwave.compare.misfit.external import Curves
-from jointwave.compare.misfit.pairs import Comparison, measure
 from jointwave.compare.misfit.places import Place
+
+PILLAR = {"length": 60.0, "side": 0.5, "block": 0.5}
+LOAD = {"amplitude": 1e6, "period": 0.01}
+BAR = {
+    "title": "a bar",
+    "pillar": PILLAR,
+    "rock": {"density": 2000.0, "equivalent_modulus": 2e9, "equivalent_poisson": 0.25},
+    "load": {"shape": "sine", **LOAD},
+    "time": {"duration": 0.06},
+    "record": {"velocity": [10.0, 30.0]},
+}
+Y = np.linspace(5.25, 20.25, 16).tolist()  # centres of blocks
+#: A damped pillar struck at its free start, until the wave is back from its end.
+ROW = {
+    "title": "a row",
+    "pillar": PILLAR,
+    "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
+    "joints": {"damping_ratio": 0.02},
+    "load": {"shape": "ricker", **LOAD},
+    "time": {"duration": 0.048},
+    "record": {"velocity": Y, "interval": 5e-5},
+}
+THEORY = "rigid blocks, theory"
 
 
 @pytest.fixture(scope="module")
-def compared():
-    """A sine in a bar: v = p0 / (rho c), (v omega)^2 T / 2 of squared acceleration."""
-    scene = load_tables(
-        {
-            "title": "a bar",
-            "pillar": {"length": 60.0, "side": 0.5, "block": 0.5},
-            "rock": {
-                "density": 2000.0,
-                "equivalent_modulus": 2000.0 * 1000.0**2,
-                "equivalent_poisson": 0.25,
-            },
-            "load": {"shape": "sine", "amplitude": 1e6, "period": 0.01},
-            "time": {"duration": 0.06},
-            "record": {"velocity": [10.0, 30.0]},
-        }
-    )
-    results = {"images": solve("images", scene)}
-    return Comparison(scene, results, {}, measure(results))
+def bar(compared):
+    return compared(load_tables(BAR), by=("images",))[0]
 
 
-def test_a_sine_has_the_numbers_of_its_closed_forms(compared):
-    frame = reading_frame([compared])
+@pytest.fixture(scope="module")
+def row(compared):
+    return compared(load_tables(ROW))[0]
+
+
+def test_a_sine_has_the_numbers_of_its_closed_forms(bar):
+    """v = p0 / (rho c), and (v omega)^2 T / 2 of squared acceleration."""
+    frame = reading_frame([bar])
     assert list(frame["at"]) == ["10 m", "30 m"]
     first = frame.iloc[1]
     assert first["peak velocity (m/s)"] == pytest.approx(0.5, rel=1e-4)
@@ -51,56 +64,70 @@ def test_a_sine_has_the_numbers_of_its_closed_forms(compared):
     assert 0.5 * 200 * np.pi < first["spectral acceleration (m/s2)"] < 4 * 0.5 * 200 * np.pi
 
 
-def test_curves_of_others_stand_below_the_solutions(compared, tmp_path):
+def test_curves_of_others_stand_below_the_solutions(bar):
     """A measured velocity, unevenly sampled, has its own row; a stress has none."""
     time = np.array([0.0, 0.01, 0.02, 0.025, 0.03])
     places = [Place("velocity", "y", (10.0,)), Place("stress", "", (10.0,))]
     curves = Curves("gauge.csv", "gauge.csv", time, dict.fromkeys(places, np.sin(100 * time)))
-    beside = align_curve(curves, compared.scene, compared.results, align=False)
-    with_curve = Comparison(compared.scene, compared.results, {}, compared.rows, [beside])
-    frame = reading_frame([with_curve])
+    beside = align_curve(curves, bar.scene, bar.results, align=False)
+    frame = reading_frame([replace(bar, besides=[beside])])
     assert list(frame["solution"]) == ["images", "images", "gauge.csv"]
     assert frame["peak velocity (m/s)"].iloc[2] == pytest.approx(np.sin(2.0))
 
 
-def test_the_table_is_printed_and_is_in_the_json(compared, capsys):
-    show_comparisons([compared], False, False, reads=True)
+def test_the_table_is_printed_and_is_in_the_json(bar, capsys):
+    show_comparisons([bar], False, False, reads=True)
     lines = capsys.readouterr().out.splitlines()
     last = " ".join(lines[-1].split())
     assert last.startswith("base scene homogenised bar, images 30 m 0.5 ")
     assert all(name in "\n".join(lines) for name in READINGS)
-    show_comparisons([compared], False, True, reads=True)
+    show_comparisons([bar], False, True, reads=True)
     (facts,) = json.loads(capsys.readouterr().out)
     assert [row["at"] for row in facts["readings"]] == ["10 m", "30 m"]
     assert facts["readings"][0]["speed (m/s)"] is None
 
 
-def test_nothing_is_read_where_no_velocity_is_recorded(compared, capsys):
-    silent = {name: result.isel(velocity_y=[]) for name, result in compared.results.items()}
-    nothing = compared.__class__(compared.scene, silent, {}, compared.rows)
+def test_nothing_is_read_where_no_velocity_is_recorded(bar, capsys):
+    silent = {name: result.isel(velocity_y=[]) for name, result in bar.results.items()}
+    nothing = replace(bar, results=silent)
     assert reading_frame([nothing]).empty
     show_comparisons([nothing], False, False, reads=True)
-    assert (
-        "no velocities are recorded: record.velocity or record.points is empty"
-        in capsys.readouterr().out
-    )
+    said = "no velocities are recorded: record.velocity or record.points is empty"
+    assert said in capsys.readouterr().out
 
 
-def test_a_damped_bar_has_its_quality_factor():
+def test_a_damped_row_has_the_quality_factor_of_its_joints(row):
     """1/Q = omega eta at the loudest frequency of a wavelet, which the record, of steps of 21 Hz,
     has at 104 Hz, not 100, and the loss on the way moves a little."""
-    scene = load_tables(
-        {
-            "title": "a damped row",
-            "pillar": {"length": 60.0, "side": 0.5, "block": 0.5},
-            "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
-            "joints": {"damping_ratio": 0.02},
-            "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01},
-            "time": {"duration": 0.048},
-            "record": {"velocity": [5.25, 20.25], "interval": 5e-5},
-        }
-    )
-    frame = reading_frame([Comparison(scene, {"lattice": solve("lattice", scene)}, {}, [])])
-    found = frame["apparent Q"].iloc[1]
-    eta = calibrate(scene).time_constant
-    assert found == pytest.approx(1 / (2 * np.pi * 100 * eta), rel=0.15)
+    frame = reading_frame([row]).set_index("solution")
+    expected = 1 / (2 * np.pi * 100 * calibrate(row.scene).time_constant)
+    assert frame.loc["lattice", "apparent Q"].iloc[-1] == pytest.approx(expected, rel=0.15)
+
+
+def test_a_damped_chain_is_its_theory(row):
+    """Phase speed and 1/Q of rigid blocks."""
+    curves = curves_of(row)
+    for solution in ("dem", "lattice"):
+        speed, theory = (curves[name]["phase speed (m/s)"] for name in (solution, THEORY))
+        assert len(speed) > 10
+        np.testing.assert_allclose(speed, theory[speed.index], rtol=2e-3)
+        loss = curves[solution]["1/Q"]
+        heard = loss.index[(loss.index > 50) & (loss.index < 200)]
+        np.testing.assert_allclose(loss[heard], curves[THEORY]["1/Q"][heard], rtol=0.03)
+
+
+def test_the_transfer_function_is_what_the_loss_leaves(row):
+    """|H| = exp(-a x), a = omega / (2 c Q), c by all receivers and not by two: some 1e-4."""
+    curves, way = curves_of(row)["dem"], Y[-1] - Y[0]
+    speed, loss = curves["phase speed (m/s)"], curves["1/Q"]
+    omega = 2 * np.pi * speed.index.values
+    left = np.exp(-omega * way / (2 * speed) * loss[speed.index])
+    np.testing.assert_allclose(curves["transfer function"][speed.index], left, rtol=2e-3)
+
+
+def test_a_picture_needs_a_row(row):
+    (found,) = propagation("row", [row])
+    assert found.name == "row-propagation"
+    assert {"dem", "lattice", THEORY} <= {c.split(" | ")[0] for c in found.table.columns[1:]}
+    two = {k: x.isel(velocity_y=slice(0, 2)) for k, x in row.results.items()}
+    assert propagation("row", [replace(row, results=two)]) == []

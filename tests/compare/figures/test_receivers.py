@@ -1,21 +1,45 @@
-"""Which quantities and components panels show."""
+"""Which quantities and components panels and tables show of a receiver."""
 
 import numpy as np
 import pytest
 
+from jointwave.cases.read import load_tables
+from jointwave.compare.engines import solve
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.receivers import curve_table, panels
-from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.figures.tables import distance_frame
+from jointwave.compare.misfit.pairs import Comparison, measure
+from jointwave.compare.report.tables import misfit_table
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
+ACROSS = {"load__direction": [1.0, 0.0, 0.0]}
 TWIST = {"load__arm": 0.2, "record__stress": []}
 
 
-def comparison(pillar, name="spatial-lattice", **changes):
-    """Return a scene solved by one exact solution."""
-    scene = pillar(**RECORD | changes)
-    return Comparison(scene, {name: row_of_blocks.solve(scene)})
+@pytest.fixture
+def solved(pillar):
+    """Return a function that gives a scene solved as a row of blocks, which is exact."""
+
+    def solve_row(name="spatial-lattice", **changes):
+        scene = pillar(**RECORD | changes)
+        return Comparison(scene, {name: row_of_blocks.solve(scene)})
+
+    return solve_row
+
+
+@pytest.fixture
+def joint(one_joint):
+    """Return a function that solves rock with one joint of a dip (degrees), exactly."""
+
+    def solve_joint(dip, name="oblique-joint"):
+        record = {"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4}
+        tables = one_joint(domain={"size": [20.0, 20.0]}, time={"duration": 0.02}, record=record)
+        tables["joint_sets"][0] |= {"through": [10.0, 10.0], "dip": dip}
+        scene = load_tables(tables)
+        return Comparison(scene, {name: solve("oblique-joint", scene)})
+
+    return solve_joint
 
 
 @pytest.mark.parametrize(
@@ -30,8 +54,8 @@ def comparison(pillar, name="spatial-lattice", **changes):
         (TWIST, ["rotation y at y = 5.25 m"]),
     ],
 )
-def test_a_panel_shows_a_component_that_moves(pillar, changes, places):
-    found = comparison(pillar, **changes)
+def test_a_panel_shows_a_component_that_moves(solved, changes, places):
+    found = solved(**changes)
     (row,) = panels([found])
     assert [panel.place.heading for panel in row] == places
     for panel in row:
@@ -39,59 +63,78 @@ def test_a_panel_shows_a_component_that_moves(pillar, changes, places):
         np.testing.assert_array_equal(panel.curves["spatial-lattice"], values)
 
 
-def test_variants_of_different_motion_share_a_figure_and_a_table(pillar):
-    """Axial, spatial and twisted: each panel has its own unit, each column its full heading."""
-    found = [
-        comparison(pillar, "lattice"),
-        comparison(pillar, load__direction=[1.0, 0.0, 0.0]),
-        comparison(pillar, record__velocity=[5.25, 9.75], **TWIST),
+@pytest.mark.parametrize(("dip", "moving"), [(30.0, ["x", "y", "n", "s"]), (0.0, ["y", "n"])])
+def test_nothing_moves_sideways_at_a_level_joint(joint, dip, moving):
+    """The wave travels upwards."""
+    (row,) = panels([joint(dip)])
+    quantities = {"x": "velocity", "y": "velocity", "n": "traction", "s": "traction"}
+    places = {"velocity": "[10, 5]", "traction": "[10, 10]"}
+    assert [panel.place.heading for panel in row] == [
+        f"{quantities[way]} {way} at {places[quantities[way]]} m" for way in moving
     ]
+
+
+def test_variants_of_different_motion_share_a_figure_and_a_table(solved):
+    """Axial, spatial and twisted: each panel has its own unit, each column its full heading."""
+    turning = solved(record__velocity=[5.25, 9.75], **TWIST)
+    found = [solved("lattice"), solved(**ACROSS), turning]
     labels = [ax.get_ylabel() for ax in draw_solutions(found).axes]
     assert [label for label in labels if label] == [
-        "stress (MPa)",
-        "velocity (m/s)",
-        "shear (MPa)",
-        "velocity (m/s)",
-        "rotation (mrad)",
-        "rotation (mrad)",
+        *("stress (MPa)", "velocity (m/s)", "shear (MPa)", "velocity (m/s)"),
+        *("rotation (mrad)", "rotation (mrad)"),
     ]
     units = [column.rpartition("(")[2] for column in curve_table(found)][1:]
     assert units == ["Pa)", "m/s)", "Pa)", "m/s)", "rad)", "rad)"]
 
 
-SHEAR = {"load__direction": [1.0, 0.0, 0.0], "motion__rotation": "none"}
+def test_variants_of_other_durations_share_one_table(solved):
+    """Where a shorter variant has no sample the cell is empty."""
+    found = [solved("lattice", record__velocity=[], time__duration=t) for t in (0.01, 0.02)]
+    found[1].scene = found[1].scene.model_copy(update={"name": "long"})
+    table = curve_table(found)
+    assert table.shape == (401, 3) and table.isna().sum().tolist() == [0, 200, 0]
 
 
 @pytest.mark.parametrize("normal", [1e5, 1e7])
-def test_what_moves_is_drawn_not_what_stands(pillar, normal):
+def test_what_moves_is_drawn_not_what_stands(solved, normal):
     """A shear wave under a prestress that is larger: the transmitted shear, in every panel."""
-    plain = comparison(pillar, **SHEAR)
-    found = comparison(pillar, prestress__normal=normal, **SHEAR)
-    for panel, other in zip(panels([found])[0], panels([plain])[0], strict=True):
+    shear = ACROSS | {"motion__rotation": "none"}
+    plain, found = (panels([solved(prestress__normal=n, **shear)])[0] for n in (0.0, normal))
+    for panel, other in zip(found, plain, strict=True):
         assert panel.place == other.place and panel.at_rest == 0
         curve, same = panel.curves.to_numpy(), other.curves.to_numpy()
         np.testing.assert_allclose(curve, same, atol=1e-9 * np.abs(same).max())
-    assert panels([found])[0][0].place.heading == "shear x at y = 5 m"
+    assert found[0].place.heading == "shear x at y = 5 m"
 
 
-def test_the_static_state_is_taken_from_a_waveform_and_said(pillar):
+def test_the_static_state_is_taken_from_a_waveform_and_said(solved):
     """The motion is drawn; the table contains the recorded values."""
-    scenes = [pillar(**RECORD, prestress__normal=normal) for normal in (0.0, 2e6)]
-    found = [Comparison(scene, {"lattice": row_of_blocks.solve(scene)}) for scene in scenes]
+    found = [solved("lattice", prestress__normal=normal) for normal in (0.0, 2e6)]
     (moving, _), (stressed, _) = panels(found)
     assert (moving.at_rest, stressed.at_rest) == (0.0, pytest.approx(2e6))
     np.testing.assert_allclose(stressed.curves["lattice"], moving.curves["lattice"], atol=1e-3)
     upper = draw_solutions(found[1:]).axes[0]
     assert upper.get_ylabel() == "stress (MPa)\nless 2 at rest"
     assert np.abs(upper.lines[1].get_ydata()).max() < 1.1
-    column = curve_table(found[1:]).iloc[:, 1]
-    assert column.iloc[0] == pytest.approx(2e6)
+    assert curve_table(found[1:]).iloc[0, 1] == pytest.approx(2e6)
 
 
-def test_gravity_that_stands_is_no_motion(pillar):
+def test_gravity_that_stands_is_no_motion(solved):
     """Where it is there from the start, the first sample is at rest."""
-    scene = pillar(**RECORD, gravity__direction=[0.0, 1.0, 0.0], ends__end="fixed")
-    found = Comparison(scene, {"lattice": row_of_blocks.solve(scene)})
+    found = solved("lattice", gravity__direction=[0.0, 1.0, 0.0], ends__end="fixed")
     stress, _ = panels([found])[0]
     assert stress.at_rest == pytest.approx(2400 * 9.81 * 5.0, rel=0.02)
     assert stress.curves["lattice"].iloc[0] == 0
+
+
+def test_tables_name_places_in_the_plane(joint):
+    """Two variants beside each other as two solutions would be: a row a place, x and y apart."""
+    one, other = joint(30.0), joint(0.0, "continuum-jointed")
+    one.rows = measure(other.results | one.results)
+    frame = distance_frame([one])
+    assert {"x (m)", "y (m)"} <= set(frame) and set(frame["y (m)"]) == {5.0, 10.0}
+    assert {"velocity x", "slip"} <= set(frame.quantity)
+    table = misfit_table([one])
+    places = {"velocity x at [10, 5] m", "traction n at [10, 10] m"}
+    assert {f"base scene, {place}" for place in places} < {*table.index}
+    assert list(table) == [("numerical error", "continuum-jointed ~ oblique-joint (%)")]

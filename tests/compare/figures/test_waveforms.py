@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
 
 from jointwave import cases
 from jointwave.compare.engines import applies, label_of, solve
@@ -17,57 +16,73 @@ from jointwave.compare.figures.charts.waveforms import (
     draw_overlays,
     draw_solutions,
     variant_styles,
+    waveforms,
 )
 from jointwave.compare.figures.receivers import panels
+from jointwave.compare.figures.style import GIVEN
+from jointwave.compare.figures.variants import variant_names
+from jointwave.compare.misfit.alignment import align_curve
+from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.misfit.places import Place
 from jointwave.compare.misfit.ranking import finest
 
 SHIPPED = Path(cases.__file__).parent
 SHORT = {"time__duration": 0.03}
+DAMPED = {"joints__damping_ratio": 0.1}
 #: A soft layer, a damping ratio and an end: every exact solution that is used here has them.
 CHANGES = {
-    "joints.damping_ratio": {"joints__damping_ratio": 0.1},
+    "joints.damping_ratio": DAMPED,
     "ends.end": {"ends__end": "quiet"},
     "soft_layers": {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]},
 }
 
 
-def solved(*scenes, by=("lattice", "jointed-bar", "equivalent-bar")):
-    """Return scenes solved exactly, with the bars and the chain in place of the engines."""
-    engines = dict(zip(by, ("dem", "continuum-jointed", "continuum-equivalent"), strict=False))
-    found = []
-    for scene in scenes:
-        results = {name: solve(name, scene) for name in by if applies(name, scene)}
-        results |= {engines[name]: result for name, result in list(results.items())}
-        found.append(Comparison(scene, results))
-    return found
+@pytest.fixture
+def solved(pillar):
+    """Return a function that solves short pillars with these changes exactly, variants a, b, ...,
+    with the bars and the chain in place of the engines."""
+    engines = ("dem", "continuum-jointed", "continuum-equivalent")
+
+    def solve_all(*changes, by=("lattice", "jointed-bar", "equivalent-bar")):
+        found = []
+        for letter, change in zip("ab", changes, strict=False):
+            scene = pillar(**SHORT | change).model_copy(update={"name": letter})
+            results = {name: solve(name, scene) for name in by if applies(name, scene)}
+            as_engines = {e: results[n] for n, e in zip(by, engines, strict=False) if n in results}
+            found.append(Comparison(scene, results | as_engines))
+        return found
+
+    return solve_all
 
 
 @pytest.mark.parametrize(
-    ("name", "key"),
+    ("name", "key", "words"),
     [
-        ("guo-li-2002/fig-03", "joints.damping_ratio"),
-        ("guo-li-2002/fig-05", "ends.end"),
-        ("guo-li-2002/fig-06", "joints.damping_ratio"),  # and how it is stepped
-        ("guo-li-2002/fig-07", "soft_layers"),
-        ("guo-li-2002/fig-08", "soft_layers"),
-        ("guo-li-2002/fig-09", "joints.tension"),
-        ("guo-li-2002/fig-10", "joints.tension"),
-        ("beyond/prestressed-no-tension", "prestress.normal"),
-        ("beyond/shear-pulse", "motion.rotation"),
-        ("beyond/cantilever-gravity", None),  # several
-        ("guo-li-2002/fig-04", None),  # no variants
+        (
+            "guo-li-2002/fig-03",
+            "joints.damping_ratio",
+            ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"],
+        ),
+        ("guo-li-2002/fig-05", "ends.end", ["free", "quiet", "matched"]),
+        ("guo-li-2002/fig-06", "joints.damping_ratio", None),  # and how it is stepped
+        ("guo-li-2002/fig-07", "soft_layers", ["no soft layer", "soft layer"]),
+        ("guo-li-2002/fig-09", "joints.tension", ["tension", "no tension"]),
+        ("beyond/prestressed-no-tension", "prestress.normal", None),
+        ("beyond/shear-pulse", "motion.rotation", None),
+        ("beyond/cantilever-gravity", None, None),  # several
+        ("guo-li-2002/fig-04", None, ["base scene"]),  # no variants
     ],
 )
-def test_the_key_that_makes_the_variants_of_a_scene(name, key):
-    scenes = cases.load(SHIPPED / f"{name}.toml")
-    assert changed_key([Comparison(scene) for scene in scenes]) == key
+def test_variants_are_named_by_the_key_that_makes_them(name, key, words):
+    found = [Comparison(scene) for scene in cases.load(SHIPPED / f"{name}.toml")]
+    assert changed_key(found) == key
+    assert words is None or variant_names(found) == words
 
 
 @pytest.mark.parametrize("key", CHANGES)
-def test_variants_of_one_key_share_a_pair_of_axes_an_engine(pillar, key):
-    scenes = [pillar(**SHORT), pillar(**SHORT, **CHANGES[key])]
-    found = solved(*(s.model_copy(update={"name": n}) for s, n in zip(scenes, "ab", strict=True)))
+def test_variants_of_one_key_share_a_pair_of_axes_an_engine(solved, key):
+    found = solved({}, CHANGES[key])
     assert changed_key(found) == key
     ((dem, jointed, bar),) = by_variant(found)
     for overlay, engine in ((dem, "dem"), (jointed, "continuum-jointed")):
@@ -79,20 +94,18 @@ def test_variants_of_one_key_share_a_pair_of_axes_an_engine(pillar, key):
     assert bar.traces[0].residual.any() and bar.reference == "jointed bar, exact"
 
 
-def test_variants_that_differ_twice_or_record_something_else_do_not(pillar):
-    twice = pillar(**SHORT, ends__end="quiet", joints__damping_ratio=0.1)
-    assert by_variant(solved(pillar(**SHORT), twice)) == []
-    assert by_variant(solved(pillar(**SHORT), pillar(**SHORT))) == []
-    across = pillar(**SHORT, load__direction=[1.0, 0.0, 0.0])
-    by = ("spatial-lattice",)
-    assert by_variant(solved(pillar(**SHORT), across, by=("lattice", *by))) == []
-    several = [pillar(**SHORT, joints__damping_ratio=0.01 * k) for k in range(MOST + 1)]
+def test_variants_that_differ_twice_or_record_something_else_do_not(solved, pillar):
+    assert by_variant(solved({}, {"ends__end": "quiet"} | DAMPED)) == []
+    assert by_variant(solved({}, {})) == []
+    across = {"load__direction": [1.0, 0.0, 0.0]}
+    assert by_variant(solved({}, across, by=("lattice", "spatial-lattice"))) == []
+    several = [pillar(joints__damping_ratio=0.01 * k) for k in range(MOST + 1)]
     assert by_variant([Comparison(scene) for scene in several]) == []
 
 
-def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pillar):
+def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(solved):
     """So that a tenth of it is seen: the residuals fill their axes, and their size is said."""
-    (found,) = solved(pillar(**SHORT))
+    (found,) = solved({})
     panel = panels([found])[0][0]
     assert panel.reference == finest(found.results, found.scene).name == "jointed-bar"
     known = found.results["jointed-bar"].stress.values[0]
@@ -111,28 +124,31 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(pilla
     assert 1 < share < 50 and f"≤ {share:.2g}\u00a0% of the peak" in heading
 
 
-def test_a_lone_solution_has_no_residual(pillar):
-    (found,) = solved(pillar(**SHORT), by=("lattice",))
+def test_a_lone_solution_has_no_residual(solved):
+    (found,) = solved({}, by=("lattice",))
     found.results.pop("dem")
     assert len(draw_solutions([found]).axes) == 1
 
 
 @pytest.mark.parametrize("count", range(2, MOST + 1))
 def test_every_variant_is_seen_where_all_coincide(count):
-    styles = variant_styles(count)
-    assert len({style.colour for style in styles}) == count
-    widths = [style.width for style in sorted(styles, key=lambda style: style.order)]
-    assert all(a > b + 0.3 for a, b in pairwise(widths))
+    styles = sorted(variant_styles(count), key=lambda style: style.order)
+    assert all(a.width > b.width + 0.3 for a, b in pairwise(styles))
 
 
-def test_headings_of_a_figure_do_not_meet(pillar):
+def test_headings_do_not_meet(solved, collisions):
     """Above panels and residuals, three engines beside each other."""
-    found = solved(pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.1))
-    figure = draw_overlays(by_variant(found))
-    figure.canvas.draw()
-    titles = {ax.get_title(loc="left") for ax in figure.axes}
-    boxes = [t.get_window_extent() for t in figure.findobj(Text) if t.get_text() in titles - {""}]
-    assert len(boxes) == 6
-    assert not [
-        (i, j) for i, a in enumerate(boxes) for j, b in enumerate(boxes) if i < j and a.overlaps(b)
-    ]
+    assert collisions(draw_overlays(by_variant(solved({}, DAMPED)))) == []
+
+
+def test_curves_of_others_stand_beside_at_their_own_times(solved):
+    (found,) = solved({}, by=("lattice",))
+    time = np.array([0.0, 0.011, 0.017, 0.029])
+    values = {Place("stress", "", (20.0,)): np.array([0.0, 1e5, 8e5, -2e5])}
+    curves = Curves("lab.csv", "lab.csv", time, values)
+    found.besides.append(align_curve(curves, found.scene, found.results, False))
+    (picture,) = waveforms("fig", [found])
+    (line,) = (x for x in picture.figure.axes[0].lines if x.get_label() == "lab.csv")
+    np.testing.assert_allclose(line.get_xdata(), 1e3 * time)
+    np.testing.assert_allclose(line.get_ydata(), [0.0, 0.1, 0.8, -0.2])
+    assert line.get_color() == GIVEN[0].colour

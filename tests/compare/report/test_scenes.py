@@ -2,11 +2,7 @@
 
 import pytest
 
-from jointwave import cases
 from jointwave.cases.errors import SceneError
-from jointwave.compare.figures.receivers import curve_table
-from jointwave.compare.figures.variants import variant_names
-from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.report import build
 from jointwave.compare.report.scenes import PAPER, ROCK_MASSES, asked_for
 
@@ -44,29 +40,3 @@ def test_a_scene_that_is_not_there_is_said_before_anything_is_written(tmp_path):
     with pytest.raises(SceneError, match=r"none\.toml"):
         build(tmp_path / "page", scenes=["none.toml"])
     assert not (tmp_path / "page").exists()
-
-
-@pytest.mark.parametrize(
-    ("name", "names"),
-    [
-        ("fig-03", ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"]),
-        ("fig-05", ["free", "quiet", "matched"]),
-        ("fig-07", ["no soft layer", "soft layer"]),
-        ("fig-09", ["tension", "no tension"]),
-    ],
-)
-def test_variants_are_named_by_what_differs(name, names):
-    comparisons = [Comparison(scene) for scene in cases.load(PAPER / f"{name}.toml")]
-    assert variant_names(comparisons) == names
-
-
-def test_variants_of_other_durations_share_one_table(pillar):
-    """Where a shorter variant has no sample the cell is empty."""
-    from jointwave.compare.exact.bar import images
-
-    scenes = [pillar(time__duration=duration, load__cycles=1) for duration in (0.01, 0.02)]
-    scenes[1] = scenes[1].model_copy(update={"name": "long"})
-    comparisons = [Comparison(scene, {"images": images.solve(scene)}) for scene in scenes]
-    table = curve_table(comparisons)
-    assert table.shape == (401, 3)
-    assert table.isna().sum().tolist() == [0, 200, 0]
