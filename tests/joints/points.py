@@ -1,9 +1,15 @@
 """One point of a joint whose history is told by its elastic slip, as the source papers tell it."""
 
+from itertools import pairwise
 from typing import NamedTuple
+
+import numpy as np
+from hypothesis import strategies as st
 
 from jointwave.joints import tangent as tangents
 from jointwave.joints.law import History, law_of, parts_of, table_of, traction
+
+DT = 1e-5
 
 
 class Point(NamedTuple):
@@ -40,3 +46,21 @@ def tangent(law, parts, gap, gap_rate, slip, slip_rate, dt, before, r):
     """Return the `Tangent` of such a step."""
     jump, history = jump_of(gap, slip, before)
     return tangents.tangent(law, parts, jump, (gap_rate, *slip_rate), dt, history, r)
+
+
+def march(one, path, **flags):
+    """Yield (step, traction before, after) of every step of a path of jumps, m, from rest."""
+    law, parts = at_point(one)
+    parts, history, before = parts._replace(**flags), History(cohesion=one.cohesion or 0.0), None
+    for last, jump in pairwise([np.zeros(3), *map(np.array, path)]):
+        step = jump - last
+        now = traction(law, parts, tuple(jump), tuple(step), tuple(step / DT), DT, history)
+        if before is not None:
+            yield step, before, now
+        history, before = now.history, now
+
+
+def some(low, high, digits=9):
+    """Return floats in a range; rounded, as the square of a number below 1e-162 is zero, and
+    differences of small ones mean nothing."""
+    return st.floats(low, high).map(lambda x: round(x, digits))

@@ -1,4 +1,5 @@
-"""Compiled into a kernel, the law is what Python says, part by part, and nothing besides."""
+"""Compiled into a kernel, the law is what Python says, part by part, and nothing besides; a formula
+of one's own is built on it."""
 
 import re
 from itertools import product
@@ -7,7 +8,18 @@ import numba
 import numpy as np
 import pytest
 
-from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
+from jointwave.joints.formula import formula
+from jointwave.joints.law import (
+    OF_PART,
+    History,
+    Law,
+    LawFlags,
+    law_at,
+    law_of,
+    parts_of,
+    table_of,
+    traction,
+)
 from jointwave.joints.tangent import Tangent, tangent
 
 N, DT, HISTORY = 64, 1e-5, History()
@@ -15,16 +27,10 @@ ELASTIC = Law(9e9, shear_stiffness=3e9)
 WHOLE = Law(9e9, 1e5, False, 3e9, 3e4, 1e6, 0.5, 1e5, 1e6, 1e-3)
 CLOSES = {"maximum_closure": 5e-4, "rock_compliance": 1e-11}
 LAWS = {
-    "elastic": ELASTIC,
-    "no tension": ELASTIC._replace(carries_tension=False),
-    "friction": ELASTIC._replace(normal_viscosity=1e5, shear_viscosity=3e4, friction=0.5),
-    "all of shear": WHOLE._replace(tensile_strength=None, critical_opening=None),
-    "closure": ELASTIC._replace(**CLOSES),
-    "all of softening, closure": WHOLE._replace(carries_tension=None, **CLOSES),
+    "no tension": ELASTIC._replace(carries_tension=False, **CLOSES),
     "dilation": WHOLE._replace(
         dynamic_friction=0.2, weakening_distance=2e-3, dilation=0.2, dilation_distance=2e-3
     ),
-    "weakening": WHOLE._replace(dynamic_friction=0.2, weakening_distance=2e-3),
     "rate and state": WHOLE._replace(
         direct_effect=0.01,
         evolution_effect=0.015,
@@ -95,46 +101,75 @@ def test_kernel_is_python(name, varied):
         )
 
 
-def counts(one, kinds, formula="traction"):
+KINDS = ("fcmp", "fdiv", "fmul")
+
+
+def counts(one, formula):
     """Return how many of each kind of instruction one point of a law takes."""
     parts, table = parts_of(one), table_of(one)
-    if formula == "traction":
 
-        @compiled
-        def point(table, gap, x, n, vx, opening, slide, cohesion):
-            law, h = law_of(table, 0), History(opening, slide, slide, cohesion, 0.0)
-            step, rate = (0.0, 0.0, 0.0), (n, vx, vx)
-            return traction(law, parts, (gap, x, x), step, rate, DT, h)[:3]
-    else:
-
-        @compiled
-        def point(table, gap, x, n, vx, opening, slide, cohesion):
-            law, h = law_of(table, 0), History(opening, slide, slide, cohesion, 0.0)
-            return tangent(law, parts, (gap, x, x), (n, vx, vx), DT, h, 1e3)
+    @compiled
+    def point(table, gap, x, n, vx, opening, slide, cohesion):
+        law, h = law_of(table, 0), History(opening, slide, slide, cohesion, 0.0)
+        jump, step, rate = (gap, x, x), (0.0, 0.0, 0.0), (n, vx, vx)
+        if formula == "traction":
+            found = traction(law, parts, jump, step, rate, DT, h)
+            return found.n, found.x, found.z
+        slope = tangent(law, parts, jump, rate, DT, h, 1e3)
+        return slope.nn, slope.xx, slope.xn
 
     point(table, 1e-6, 0.1, 1e-6, 0.1, 0.0, 0.0, 0.0)
     text = "\n".join(point.inspect_llvm().values())
-    return [len(re.findall(rf"= {kind} ", text)) for kind in kinds]
+    return [len(re.findall(rf"= {kind} ", text)) for kind in KINDS]
 
 
-def test_absent_parts_leave_no_instruction():
-    """A plain joint costs one product a direction; no comparison, no quotient, no root."""
-    kinds = ("fcmp", "fdiv", "fmul")
-    assert counts(Law(9e9), kinds) == [0, 0, 1]
-    assert counts(ELASTIC, kinds) == [0, 0, 2]  # both shears are of one slip
-    assert counts(Law(9e9, carries_tension=False), kinds)[0] > 0
-    assert counts(ELASTIC._replace(friction=0.5), kinds)[1] > 0
-    assert counts(Law(9e9, tensile_strength=1e5, critical_opening=1e-3), kinds)[0] > 0
+@pytest.mark.parametrize(("formula", "products"), [("traction", 2), ("tangent", 0)])
+def test_absent_parts_leave_no_instruction(formula, products):
+    """A plain joint costs one product a direction, no comparison, no quotient, no root; friction
+    brings all of them."""
+    assert counts(ELASTIC, formula) == [0, 0, products]  # both shears are of one slip
+    assert min(counts(ELASTIC._replace(friction=0.5), formula)) > 0
 
 
-def test_absent_parts_leave_no_instruction_in_the_tangent():
-    """A plain joint compares nothing; without shear there is one product, of stiffness alone."""
-    kinds = ("fcmp", "fdiv", "fmul")
-    assert counts(Law(9e9), kinds[:2], "tangent") == [0, 0]
-    assert counts(ELASTIC, kinds[:2], "tangent") == [0, 0]
-    assert counts(Law(9e9, 1e5), kinds, "tangent")[2] <= 1
-    assert counts(Law(9e9, None, False), kinds, "tangent")[0] > 0
-    assert counts(ELASTIC._replace(friction=0.5), kinds, "tangent")[1] > 0
+def test_a_tangent_of_a_plain_joint_is_its_stiffness():
     bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
-    found = tangent(*bare, (1e-6, 0.0, 0.0), (0.1, 0.0, 0.0), DT, History(), 1e5)
+    found = tangent(*bare, (1e-6, 0.0, 0.0), (0.1, 0.0, 0.0), DT, HISTORY, 1e5)
     assert found == Tangent(-9e9)
+
+
+def test_every_parameter_is_of_a_part_and_in_the_tables_of_kernels():
+    names = [name for own in OF_PART.values() for name in own]
+    assert sorted(["normal_stiffness", *names]) == sorted(Law._fields)
+    assert set(OF_PART) <= set(LawFlags._fields)
+    whole = Law(*(np.arange(2.0) + 10 * row for row in range(len(Law._fields))))
+    for j in range(2):
+        expected = Law(*(10.0 * row + j for row in range(len(Law._fields))))
+        assert law_of(table_of(whole), j) == expected
+        assert law_at(table_of(whole).ravel(), j, 2) == expected
+
+
+@formula
+def rough(table, parts, jump, step, rate, dt, history):
+    """Return the `Traction` of the weaker of two laws: Patton's bilinear strength (1966)."""
+    ridden = traction(law_of(table, 0), parts, jump, step, rate, dt, history)
+    sheared = traction(law_of(table, 1), parts, jump, step, rate, dt, history)
+    weaker = abs(ridden.x) < abs(sheared.x)
+    return ridden if weaker else sheared
+
+
+def test_a_formula_built_on_the_law_compiles():
+    """|T| <= min(t_n, 1e5 Pa + 0.5 t_n): both are 2e5 Pa under 2e5 Pa."""
+    ways = Law(1e10, shear_stiffness=1e10, cohesion=[0.0, 1e5], friction=[1.0, 0.5])
+    table, parts = table_of(ways), parts_of(ways)
+
+    @compiled
+    def kernel(table, gap, slip):
+        step, rate = (0.0, slip, 0.0), (0.0, slip / DT, 0.0)
+        before = History(0.0, 0.0, 0.0, 0.0, 0.0)
+        found = rough(table, parts, (gap, slip, 0.0), step, rate, DT, before)
+        return found.n, found.x, found.history.slide_x
+
+    for pressure, limit in ((1e5, 1e5), (2e5, 2e5), (1e6, 6e5)):
+        n, x, slide = kernel(table, -pressure / 1e10, 1e-3)
+        assert (n, x) == pytest.approx((pressure, -limit), rel=1e-12)
+        assert slide == pytest.approx(1e-3 - limit / 1e10, rel=1e-12)
