@@ -17,7 +17,7 @@ SHORT = {
 }
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def row():
     """Return a function that gives blocks of unit size, or of one cell of another kind in a block,
     along y; at two instants, the second with the given displacement of each node."""
@@ -26,25 +26,19 @@ def row():
         cell = {"line": "interval", "quad": "quadrilateral"}.get(kind, kind)
         corners = np.array(CORNERS[cell], dtype=float)
         if corners.shape[1] == 1:
-            corners = np.array([[0.0, y[0], 0.0] for y in corners])
+            corners = corners @ [[0.0, 1.0, 0.0]]
         elif corners.shape[1] == 2:
             corners = np.pad(corners - [0.5, 0.0], ((0, 0), (0, 1)))
         else:
             corners = corners - [0.5, 0.0, 0.5]
-        points = np.concatenate([corners + np.array([0.0, i, 0.0]) for i in range(count)])
+        points = np.concatenate([np.add(corners, [0.0, i, 0.0]) for i in range(count)])
         moved = np.zeros((2, *points.shape))
         if displacement is not None:
             moved[1] = displacement(points)
-        return snapshots(
-            np.array([0.0, 1e-3]),
-            points,
-            kind,
-            np.arange(len(points)).reshape(count, -1),
-            np.arange(count),
-            moved,
-            1e3 * moved,
-            np.zeros((2, count)) if stress is None else np.array(stress, dtype=float),
-        )
+        found = np.zeros((2, count)) if stress is None else np.array(stress, dtype=float)
+        cells = np.arange(len(points)).reshape(count, -1)
+        times = np.array([0.0, 1e-3])
+        return snapshots(times, points, kind, cells, np.arange(count), moved, 1e3 * moved, found)
 
     return made
 

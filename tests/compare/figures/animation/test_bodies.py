@@ -1,9 +1,12 @@
-"""Bodies: the outside of blocks, moved as computed, in the colours of their cells."""
+"""Bodies: the outside of blocks, where they move to, in the colours of their cells, near before
+far."""
 
 import numpy as np
 import pytest
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
-from jointwave.compare.figures.animation.bodies import body_of
+from jointwave.compare.figures.animation.bodies import FRONT, OBLIQUE, Body, BodyView, body_of
 from jointwave.compare.figures.animation.settings import (
     PRINCIPAL,
     SPEED,
@@ -11,47 +14,40 @@ from jointwave.compare.figures.animation.settings import (
     VELOCITY,
     ViewSettings,
 )
+from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.style import RC
 
 X, Y, Z = np.eye(3)
+PLATE = np.array([[0.0, 0, 0], [2, 0, 0], [4, 0, 0], [4, 0, 1], [2, 0, 1], [0, 0, 1]])
+COLOURS = ScalarMappable(Normalize(-1.0, 1.0), "RdBu_r")
 
 
-@pytest.fixture
-def body_at():
-    """Return a function that gives the body of snapshots of a pillar of unit side."""
-
-    def made(s, up=X, scale=1.0, stretch=1.0, quantity=STRESS):
-        return body_of(s, ViewSettings(np.array(up), scale, stretch, quantity, Y, 1.0))
-
-    return made
+def body_at(s, up=X, scale=1.0, stretch=1.0, quantity=STRESS):
+    """Return the body of snapshots of a pillar of unit side."""
+    return body_of(s, ViewSettings(np.array(up), scale, stretch, quantity, Y, 1.0))
 
 
 @pytest.mark.parametrize("kind", ["line", "quad", "hexahedron"])
-def test_every_kind_of_cells_is_a_row_of_boxes(row, body_at, kind):
+def test_every_kind_of_cells_is_a_row_of_boxes(row, kind):
     """Six faces a block, from side to side of the section, y to the right."""
     body = body_at(row(kind=kind))
     assert body.faces.shape == (18, 4) and body.values.shape == (2, 18)
     np.testing.assert_allclose(body.rest.min(axis=0), [0, -0.5, -0.5])
     np.testing.assert_allclose(body.rest.max(axis=0), [3, 0.5, 0.5])
-    corners = body.rest[body.faces]
-    area = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0]), axis=1
-    )
+    first, second, _, last = body.rest[body.faces].swapaxes(0, 1)
+    area = np.linalg.norm(np.cross(second - first, last - first), axis=1)
     np.testing.assert_allclose(area, 1.0)
 
 
-def test_cells_of_one_block_have_no_face_between_them(row, body_at):
+def test_cells_of_one_block_have_no_face_between_them(row):
     """Two boxes that share four nodes: ten faces."""
     two = row(count=2)
-    joined = np.arange(16)
-    for node in range(8, 16):
-        same = np.flatnonzero((two.points[:8] == two.points[node]).all(axis=1))
-        if same.size:
-            joined[node] = same[0]
-    assert len(body_at(two._replace(cells=joined[two.cells])).faces) == 10
+    same = (two.points[:, None] == two.points).all(axis=2).argmax(axis=1)
+    assert len(body_at(two._replace(cells=same[two.cells])).faces) == 10
 
 
 @pytest.mark.parametrize("up", [X, Z, (X + Z) / np.sqrt(2)])
-def test_the_axes_of_the_picture_keep_lengths_and_right_hands(row, body_at, up):
+def test_the_axes_of_the_picture_keep_lengths_and_right_hands(row, up):
     """Displacement is exaggerated, thickness stretched; away is up x y."""
     moved = np.array([0.1, 0.2, 0.3])
     body = body_at(row(displacement=lambda x: np.tile(moved, (len(x), 1))), up, 10.0, 2.0)
@@ -60,17 +56,13 @@ def test_the_axes_of_the_picture_keep_lengths_and_right_hands(row, body_at, up):
     np.testing.assert_allclose(body.motion[1], np.tile(expected, (24, 1)))
 
 
-def test_colours_are_the_stress_of_the_cell_behind(row, body_at):
-    body = body_at(row(3, stress=[[0, 0, 0], [1e6, -2e6, 3e6]]))
-    profile = body.profile()
-    assert profile.columns.tolist() == [0.5, 1.5, 2.5] and profile.loc[1].tolist() == [
-        1,
-        -2,
-        3,
-    ]  # MPa
+def test_colours_are_the_stress_of_the_cell_behind(row):
+    profile = body_at(row(3, stress=[[0, 0, 0], [1e6, -2e6, 3e6]])).profile()
+    assert profile.columns.tolist() == [0.5, 1.5, 2.5]
+    assert profile.loc[1].tolist() == [1, -2, 3]  # MPa
 
 
-def test_colours_of_a_shear_wave_are_the_velocity_upwards(row, body_at):
+def test_colours_of_a_shear_wave_are_the_velocity_upwards(row):
     """Of the seen side: a twist about y moves the front up and the back down."""
 
     def twisted(points):
@@ -81,7 +73,7 @@ def test_colours_of_a_shear_wave_are_the_velocity_upwards(row, body_at):
     assert profile.loc[1].tolist() == pytest.approx([0.5])  # 1e-3 rad x 0.5 m, in a millisecond
 
 
-def test_speed_is_that_of_the_corners(row, body_at):
+def test_speed_is_that_of_the_corners(row):
     body = body_at(row(displacement=lambda x: 0 * x + [0.0, 3e-3, 4e-3]), quantity=SPEED)
     np.testing.assert_allclose(body.values, np.outer([0.0, 5.0], np.ones(18)))
 
@@ -96,3 +88,38 @@ def test_the_principal_stress_of_larger_size_in_the_plane_and_in_space(row):
     space = body_of(row(1, "quad", stress=[[of_space], [flat]]), settings)
     plane = body_of(row(1, "quad", stress=[[[0] * 3], [[2e6, 1e6, 3e6]]]), settings)
     np.testing.assert_allclose(space.values[:, 0], [-5.0, plane.values[1, 0]], rtol=1e-12)
+
+
+def picture(body, per_away, i):
+    """Return the picture of a body at an instant."""
+    with blank(2.0, RC | {"figure.figsize": (10.0, 2.0)}) as figure:
+        figure.set_layout_engine("none")
+        ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        ax.set_axis_off()
+        BodyView(ax, body, COLOURS, per_away).show(i)
+        figure.canvas.draw()
+    return np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+
+
+def test_a_body_is_where_it_moves_to_in_the_colours_of_its_faces():
+    """A plate in two halves moves by its length: the left one red, the right one blue."""
+    motion = np.zeros((2, 6, 3))
+    motion[1, :, 0] = 4.0
+    faces, values = np.array([[0, 1, 4, 5], [1, 2, 3, 4]]), np.array([[0.0, 0.0], [1.0, -1.0]])
+    shown = picture(Body(PLATE, motion, faces, values, np.arange(2)), FRONT, 1)
+    height, width = shown.shape[:2]
+    empty, _, red, blue = (shown[height // 2, int((k + 0.5) / 4 * width)] for k in range(4))
+    assert (empty == 255).all()
+    assert red[0] > red[2] + 50 and blue[2] > blue[0] + 50
+
+
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+@pytest.mark.parametrize("per_away", [FRONT, OBLIQUE])
+def test_what_is_near_hides_what_is_far(per_away, order):
+    """Two plates of which the first is nearer to the viewer by 0.1 m, in any order."""
+    rest = np.concatenate([PLATE, PLATE + np.array([0.0, 0.1, 0.0])])
+    faces, values = np.array([[0, 2, 3, 5], [6, 8, 9, 11]]), np.array([[1.0, -1.0]])
+    still = np.zeros((1, 12, 3))
+    shown = picture(Body(rest, still, faces[order], values[:, order], np.array(order)), per_away, 0)
+    middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
+    assert middle[0] > middle[2] + 50

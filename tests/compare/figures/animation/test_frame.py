@@ -1,20 +1,31 @@
-"""The pictures: all that moves does, and the words are there."""
+"""The pictures: all that moves does, where it is, and the words are there."""
 
 import numpy as np
 import pytest
 from matplotlib.text import Text
 
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.read import load_tables
 from jointwave.compare.engines import label_of
-from jointwave.compare.figures.animation.frame import Frame
+from jointwave.compare.figures.animation.frame import Frame, draw_snapshots
 from jointwave.compare.figures.animation.settings import settings_for
+from jointwave.compare.figures.animation.snapshots import SceneSnapshots
+from jointwave.compare.figures.export import save
 from jointwave.compare.figures.style import style
+from jointwave.results.snapshots import snapshots
+
+
+def frame_of(taken, scale=None):
+    return Frame(taken, settings_for(taken.scene, taken.found, scale))
+
+
+def words(frame):
+    return "\n".join(text.get_text() for text in frame.figure.findobj(Text))
 
 
 @pytest.fixture(scope="module")
 def frame(simulated):
-    taken = simulated()
-    return Frame(taken, settings_for(taken.scene, taken.found))
+    return frame_of(simulated())
 
 
 def test_a_frame_differs_from_others_and_does_not_depend_on_them(frame):
@@ -28,12 +39,11 @@ def test_blocks_of_both_engines_are_drawn_where_they_are_in_their_colours(frame)
     frame.show(20)
     assert list(frame.views) == ["dem", "continuum-jointed"]
     for name, view in frame.views.items():
-        s = frame.simulated.found[name]
+        s, body = frame.simulated.found[name], frame.bodies[name]
         colours = view.faces.to_rgba(view.faces.get_array())
         assert np.abs(colours[:, 0] - colours[:, 2]).max() > 0.2
-        corners = frame.bodies[name].rest[frame.bodies[name].faces]
-        assert len(view.faces.get_array()) == len(corners) / 2  # the others face away
-        assert set(view.faces.get_array()) <= set(frame.bodies[name].values[20])
+        assert len(view.faces.get_array()) == len(body.faces) / 2  # the others face away
+        assert set(view.faces.get_array()) <= set(body.values[20])
         places = np.concatenate([path.vertices for path in view.faces.get_paths()])
         moved = s.points[:, 1] + frame.settings.scale * s.displacement[20, :, 1]
         aside = 0.1 * 0.5 * frame.simulated.scene.pillar.side * frame.settings.stretch
@@ -56,20 +66,12 @@ def test_the_front_of_the_wave_is_where_it_should_be(frame, engine):
     assert abs(arrived - exact) < frame.time[1] + p.spacing / p.bar_speed
 
 
-def words(frame):
-    return "\n".join(text.get_text() for text in frame.figure.findobj(Text))
-
-
-def test_the_picture_says_when_how_much_and_who(frame):
+def test_the_picture_says_when_how_much_and_who(frame, collisions):
     frame.show(20)
     said = words(frame)
     assert f"displacements × {frame.settings.scale:,g}" in said and "thickness × 2" not in said
     assert "axial stress (MPa), compression positive" in said and "t = 10.00 ms" in said
     assert all(label_of(name) in said for name in frame.bodies)
-
-
-def test_nothing_lies_over_anything(frame, collisions):
-    frame.show(20)
     assert collisions(frame.figure) == []
 
 
@@ -78,8 +80,9 @@ def test_a_title_of_any_length_is_whole(simulated, collisions, title):
     taken = simulated()
     scene = taken.scene.model_copy(update={"title": title.strip()})
     reasons = {"continuum-jointed": "it costs $1 or $2 " * 10}
-    some = taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons)
-    frame = Frame(some, settings_for(taken.scene, some.found))
+    frame = frame_of(
+        taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons)
+    )
     frame.show(40)
     assert collisions(frame.figure) == [] and list(frame.views) == ["dem"]
     said = words(frame).replace("\n", "").replace(" ", "")
@@ -89,7 +92,7 @@ def test_a_title_of_any_length_is_whole(simulated, collisions, title):
 def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(simulated):
     """Six frames miss the wave's peaks; the samples between them are drawn all the same."""
     taken = simulated(6)
-    frame = Frame(taken, settings_for(taken.scene, taken.found))
+    frame = frame_of(taken)
     label = next(iter(frame.traces.values())).axes.get_ylabel()
     size = {"stress\n(MPa)": 1e6, "stress\n(kPa)": 1e3}[label]
     for i in (0, 3, 5):
@@ -103,7 +106,86 @@ def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(simulated):
 
 def test_a_pillar_at_rest_is_drawn(simulated):
     taken = simulated()
-    still = {n: s._replace(displacement=0 * s.displacement, stress=0 * s.stress)
-             for n, s in taken.found.items()}  # fmt: skip
-    frame = Frame(taken._replace(found=still), settings_for(taken.scene, still))
-    assert frame.image(20).std() > 0
+    still = {
+        n: s._replace(displacement=0 * s.displacement, stress=0 * s.stress)
+        for n, s in taken.found.items()
+    }
+    assert frame_of(taken._replace(found=still)).image(20).std() > 0
+
+
+TURN = 0.1  # rad
+
+
+def test_snapshots_are_drawn_in_the_colour_of_their_stress(row, pillar, collisions, tmp_path):
+    """Three unit blocks: the second moves a little to the right, the third turns about x. The three
+    faces of each block that face the viewer are drawn, compression red and tension blue; each
+    instant is a group of the SVG."""
+
+    def moved(points):
+        at = np.repeat([0, 1, 2], 8)
+        turned = np.where(at == 2, TURN, 0.0)
+        along = 0.01 * (at == 1) + turned * points[:, 2]
+        return np.stack([0 * along, along, -turned * (points[:, 1] - 2.5)], axis=1)
+
+    scene = pillar(pillar={"length": 3.0, "side": 1.0, "block": 1.0}, record={"stress": [1.0]})
+    blocks = row(displacement=moved, stress=[[0.0, 0.0, 0.0], [2e6, -1e6, 0.0]])
+    figure = draw_snapshots("row", scene, blocks)
+    assert collisions(figure) == []
+    first, second = (ax.collections[0].get_facecolor() for ax in figure.axes[:2])
+    assert len(first) == len(second) == 9
+    red_over_blue = second[:, 0] - second[:, 2]
+    assert (red_over_blue > 0.2).sum() == (red_over_blue < -0.2).sum() == 3
+    assert [ax.get_ylabel() for ax in figure.axes[:2]] == ["0 ms", "1 ms"]
+    assert "displacements × " in figure.axes[1].get_xlabel()
+    svg = save(figure, tmp_path, "row", "A row").file("svg").read_text()
+    assert 'id="row-0"' in svg and 'id="row-1"' in svg and "compression positive" in svg
+
+
+MASS = {
+    "title": "two blocks",
+    "domain": {"size": [2.0, 1.0]},
+    "rock": {"density": 2600.0, "intact_modulus": 5e10},
+    "time": {"duration": 0.01},
+    "record": {"points": [[0.5, 0.5]]},
+}
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+@pytest.fixture
+def squares():
+    """Two squares of 1 m, of which the right one moves by 1e-4 m along (0.6, 0.8) at 2 m/s."""
+    points = np.concatenate([SQUARE, np.add(SQUARE, [1.0, 0.0])])
+    along = np.zeros((2, 8, 2))
+    along[1, 4:] = 0.6, 0.8
+    cells = np.arange(8).reshape(2, 4)
+    times = np.array([0.0, 0.01])
+    taken = snapshots(times, points, "quad", cells, [0, 1], 1e-4 * along, 2.0 * along)
+    reasons = {"continuum-jointed": "it has not been asked"}
+    return SceneSnapshots(load_tables(MASS), {"dem": taken}, reasons, {})
+
+
+def test_cells_are_displaced_and_coloured_by_their_speed(squares):
+    """Displacements as they can be seen: 4 % of 2 m over 1e-4 m is 800; of 1, 2, 5 times a power of
+    ten at most that is 500."""
+    assert settings_for(squares.scene, squares.found).scale == 500
+    body = frame_of(squares, 1000.0).bodies["dem"]
+    np.testing.assert_allclose(body.values, [[0, 0], [0, 2.0]])
+    corners = (body.rest + body.motion[1])[body.faces][..., [0, 2]]
+    np.testing.assert_allclose(corners, [SQUARE, np.add(SQUARE, [1.06, 0.08])])
+
+
+def test_the_picture_shows_the_block_that_moves_where_it_is(squares):
+    frame = frame_of(squares, 1000.0)
+    start, end = frame.image(0).astype(int), frame.image(1).astype(int)
+    (ax,) = (ax for ax in frame.figure.axes if ax.get_xlabel() == "x (m)")
+
+    def colour(image, x, y):
+        across, up = ax.transData.transform((x, y))
+        return image[len(image) - 1 - int(up), int(across), :3]
+
+    assert (colour(start, 1.5, 0.5) == colour(start, 0.5, 0.5)).all()
+    assert (colour(end, 0.5, 0.5) == colour(start, 0.5, 0.5)).all()
+    assert (colour(end, 1.5, 0.5) != colour(start, 1.5, 0.5)).any()
+    assert (colour(end, 2.04, 0.5) == colour(end, 1.5, 0.5)).all()  # beyond where it was
+    assert (colour(start, 2.04, 0.5) == 255).all()
+    assert "t = 10 ms" in frame.clock.get_text()
