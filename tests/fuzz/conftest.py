@@ -11,36 +11,51 @@ from hypothesis import HealthCheck, given, settings
 
 import targets
 from jointwave import cases
-from meshes import meshes
 
 #: How many times the inputs of a plain run.
 FUZZ = int(os.environ.get("FUZZ", "1"))
 
 
 @pytest.fixture(scope="session")
-def gmsh_files():
-    """Return gmsh files of a pillar of three blocks, of every version and form."""
-    return meshes()
+def gmsh_files(tmp_path_factory):
+    """Return files of a pillar of three blocks of 0.4 x 0.5 m with its rock and joints as groups,
+    in the plane and in space, of gmsh's versions 2.2 and 4.1, as text and binary."""
+    from jointwave.continuum.mesh.session import gmsh_session
 
-
-@pytest.fixture(scope="module")
-def meet(tmp_path_factory):
-    """Return a function of (target, bytes) that tells whether they were read or refused."""
-    folder = tmp_path_factory.mktemp("fuzz")
-    for load in Path(cases.__file__).parent.glob("*/*.csv"):
-        (folder / load.name).write_bytes(load.read_bytes())
-    before = os.environ.get("JOINTWAVE_MEMORY")
-    os.environ["JOINTWAVE_MEMORY"] = targets.MEMORY
-    yield lambda name, data: targets.met(name, data, folder)
-    del os.environ["JOINTWAVE_MEMORY"]
-    if before is not None:
-        os.environ["JOINTWAVE_MEMORY"] = before
+    file, found = tmp_path_factory.mktemp("gmsh") / "pillar.msh", []
+    for dim in (2, 3):
+        with gmsh_session() as gmsh:
+            occ, z = gmsh.model.occ, -0.2 * (dim - 2)
+            make, sizes = (
+                (occ.addRectangle, (0.4, 0.5)) if dim == 2 else (occ.addBox, (0.4, 0.5, 0.4))
+            )
+            blocks = [(dim, make(-0.2, 0.5 * i, z, *sizes)) for i in range(3)]
+            occ.fragment(blocks[:1], blocks[1:])
+            occ.synchronize()
+            groups = {"rock": gmsh.model.getEntities(dim), "joint": []}
+            for y in (0.5, 1.0):
+                box = (-1, y - 1e-3, -1, 1, y + 1e-3, 1)
+                groups["joint"] += gmsh.model.getEntitiesInBoundingBox(*box, dim - 1)
+            for name, entities in groups.items():
+                size, tags = entities[0][0], [tag for _, tag in entities]
+                gmsh.model.setPhysicalName(size, gmsh.model.addPhysicalGroup(size, tags), name)
+            gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5)
+            gmsh.model.mesh.generate(dim)
+            for version, binary in ((2.2, 0), (2.2, 1), (4.1, 0), (4.1, 1)):
+                gmsh.option.setNumber("Mesh.MshFileVersion", version)
+                gmsh.option.setNumber("Mesh.Binary", binary)
+                gmsh.write(str(file))
+                found.append(file.read_bytes())
+    return found
 
 
 @pytest.fixture
-def meets(meet):
+def meets(tmp_path, monkeypatch):
     """Return a function that lets a target meet so many inputs and asserts that some were read and
     some refused."""
+    for load in Path(cases.__file__).parent.glob("*/*.csv"):
+        (tmp_path / load.name).write_bytes(load.read_bytes())
+    monkeypatch.setenv("JOINTWAVE_MEMORY", targets.MEMORY)
 
     def found(target, inputs, count):
         outcomes = set()
@@ -52,7 +67,7 @@ def meets(meet):
         )
         @given(inputs)
         def check(data):
-            outcomes.add(meet(target, data))
+            outcomes.add(targets.met(target, data, tmp_path))
 
         check()
         assert outcomes == {"read", "refused"}

@@ -1,68 +1,49 @@
 """Scenes and studies that are wrong in any way: read, or refused in one line within 5 s."""
 
-import copy
 import datetime
 import json
 import tomllib
 from pathlib import Path
 
-import pytest
 from hypothesis import strategies as st
 
 from jointwave import cases
 from jointwave.compare.studies import SHIPPED as STUDIES
 
-SCENES = [
-    p.read_text(encoding="utf-8") for p in sorted(Path(cases.__file__).parent.glob("*/*.toml"))
-]
+SCENE_FILES = sorted(Path(cases.__file__).parent.glob("*/*.toml"))
+SCENES = [path.read_text(encoding="utf-8") for path in SCENE_FILES]
 STUDY_TEXTS = [p.read_text(encoding="utf-8") for p in sorted(STUDIES.glob("*.toml"))]
-FEW, MANY = 150, 2000  # examples
+EXAMPLES = 150
 
+ROUND = [2, 3, 10, 0.1, 0.5, 1e-3, 1e-6, 1e-9, 1e6, 1e9, 10**400, -(2**70), 2**63]
+EXTREME = [0, -1, 1, 1e-30, 1e30, -1e30, 1e-31, 1e300, 5e-324, float("nan"), float("inf")]
 NUMBERS = st.one_of(
-    st.sampled_from(
-        [0, -1, 1, 1e-30, 1e30, -1e30, 1e-31, 1e300, 5e-324, float("nan"), float("inf"), 2**63]
-    ),
-    st.sampled_from([2, 3, 10, 0.1, 0.5, 1e-3, 1e-6, 1e-9, 1e6, 1e9, 10**400, -(2**70)]),
-    st.floats(),
-    st.integers(-(10**6), 10**6),
+    st.sampled_from(EXTREME), st.sampled_from(ROUND), st.floats(), st.integers(-(10**6), 10**6)
 )
-TEXTS = st.one_of(
-    st.text(max_size=20),
-    st.sampled_from(
-        ["", "\0", "é\u2028☃", "a" * 5000, "../x", "/dev/zero", "..", "~", "nan", "free"]
-    ),
-    st.sampled_from(["sine", "ricker", "gabor", "triangle", "step", "table"]),
-    st.sampled_from(["fixed", "quiet", "matched", "implicit", "periodic", "top", "outline"]),
-    st.sampled_from(["P", "S", "pressure", "base", "force", "bed", "cut", "merge"]),
-)
-SCALARS = st.one_of(
-    NUMBERS, TEXTS, st.booleans(), st.dates(), st.datetimes(max_value=datetime.datetime(9000, 1, 1))
-)
+ODD = ["", "\0", "é\u2028☃", "a" * 5000, "../x", "/dev/zero", "..", "~", "nan", "free"]
+SHAPES = ["sine", "ricker", "gabor", "triangle", "step", "table"]
+SIDES = ["fixed", "quiet", "matched", "implicit", "periodic", "top", "outline"]
+KINDS = ["P", "S", "pressure", "base", "force", "bed", "cut", "merge"]
+TEXTS = st.text(max_size=20) | st.sampled_from(ODD) | st.sampled_from(SHAPES + SIDES + KINDS)
+TIMES = st.dates() | st.datetimes(max_value=datetime.datetime(9000, 1, 1))
 VALUES = st.recursive(
-    SCALARS,
-    lambda inner: st.one_of(
-        st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=6), inner, max_size=3)
+    st.one_of(NUMBERS, TEXTS, st.booleans(), TIMES),
+    lambda inner: (
+        st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=6), inner, max_size=3)
     ),
     max_leaves=6,
 )
 
 
-def toml(value, depth=0):
+def toml(value):
     """Return a value as TOML, tables inline."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{json.dumps(k)} = {toml(v)}" for k, v in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(toml, value)) + "]"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
+    if isinstance(value, bool | str):
         return json.dumps(value)
     return value.isoformat() if isinstance(value, datetime.date) else repr(value)
-
-
-def document(table):
-    """Return a table as a TOML document, a key a line."""
-    return "\n".join(f"{json.dumps(key)} = {toml(value)}" for key, value in table.items())
 
 
 def places(table, path=()):
@@ -74,60 +55,44 @@ def places(table, path=()):
             yield from places(value, (*path, key))
 
 
-def changed(table, path, value):
-    """Return a table with another value at a path; None drops it."""
-    table = copy.deepcopy(table)
-    inner = table
-    for key in path[:-1]:
-        inner = inner[key]
-    if value is None:
-        del inner[path[-1]]
-    else:
-        inner[path[-1]] = value
-    return table
-
-
 @st.composite
 def tables(draw, texts):
     """Draw a shipped file's table with one to three keys dropped, added, replaced or scaled."""
     table = tomllib.loads(draw(st.sampled_from(texts)))
     for _ in range(draw(st.integers(1, 3))):
-        path = draw(st.sampled_from(list(places(table)) or [("title",)]))
+        *above, last = draw(st.sampled_from(list(places(table)) or [("title",)]))
+        inner = table
+        for key in above:
+            inner = inner[key]
         kind = draw(st.sampled_from(["drop", "replace", "number", "scale", "scale", "add"]))
-        if kind == "add":
-            path = (*path[:-1], draw(st.text(max_size=8))) if isinstance(path[-1], str) else path
-        value = {"drop": st.none(), "number": NUMBERS}.get(kind, VALUES)
-        if kind == "scale":
-            here = table
-            for key in path:
-                here = here[key]
-            value = st.floats(-12, 12).map(lambda x, here=here: here * 10**x)
-            if isinstance(here, bool) or not isinstance(here, int | float) or abs(here) > 1e290:
-                value = VALUES
-        table = changed(table, path, draw(value))
-    return document(table)
+        here = inner.get(last) if isinstance(inner, dict) else inner[last]
+        is_number = isinstance(here, int | float) and not isinstance(here, bool)
+        if kind == "drop":
+            del inner[last]
+        elif kind == "scale" and is_number and abs(here) <= 1e290:
+            inner[last] = here * 10 ** draw(st.floats(-12, 12))
+        else:
+            if kind == "add" and isinstance(last, str):
+                last = draw(st.text(max_size=8))
+            inner[last] = draw(NUMBERS if kind == "number" else VALUES)
+    return "\n".join(f"{json.dumps(key)} = {toml(value)}" for key, value in table.items())
 
 
 @st.composite
 def spoilt(draw, texts):
     """Draw a file as bytes: lines doubled or cut, other encodings, any bytes in between."""
-    text = draw(st.one_of(st.sampled_from(texts), tables(texts)))
+    text = draw(st.sampled_from(texts) | tables(texts))
     kind = draw(st.sampled_from(["lines", "bytes", "encoding", "crlf", "bom", "cut", "nested"]))
     if kind == "lines":
         lines = text.splitlines()
         i, j = (draw(st.integers(0, max(0, len(lines) - 1))) for _ in range(2))
         return "\n".join([*lines[:i], *lines[j:]]).encode()
     if kind == "nested":
-        deep = draw(st.integers(1, 3000))
         opened = draw(st.sampled_from(["[", "{a=", "a.", '"b".', "a . "]))
-        return (
-            f"{text}\nx = {opened * deep}".encode()
-            if "." not in opened
-            else (opened * deep + "a=1").encode()
-        )
-    data = text.encode(draw(st.sampled_from(["utf-16", "utf-32", "latin-1"])), "replace")
+        deep = opened * draw(st.integers(1, 3000))
+        return (f"{deep}a=1" if "." in opened else f"{text}\nx = {deep}").encode()
     if kind == "encoding":
-        return data
+        return text.encode(draw(st.sampled_from(["utf-16", "utf-32", "latin-1"])), "replace")
     data = text.encode()
     if kind == "crlf":
         return data.replace(b"\n", draw(st.sampled_from([b"\r\n", b"\r", b"\n\r"])))
@@ -140,18 +105,12 @@ def spoilt(draw, texts):
 
 
 def test_a_scene_with_changed_keys_is_read_or_refused(meets):
-    meets("scene", tables(SCENES).map(str.encode), FEW)
+    meets("scene", tables(SCENES).map(str.encode), EXAMPLES)
 
 
 def test_a_spoilt_scene_file_is_read_or_refused(meets):
-    meets("scene", spoilt(SCENES), FEW)
+    meets("scene", spoilt(SCENES), EXAMPLES)
 
 
 def test_a_study_with_changed_keys_is_read_or_refused(meets):
-    meets("study", st.one_of(tables(STUDY_TEXTS).map(str.encode), spoilt(STUDY_TEXTS)), FEW)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name, texts", [("scene", SCENES), ("study", STUDY_TEXTS)])
-def test_thousands_of_files_are_read_or_refused(meets, name, texts):
-    meets(name, st.one_of(tables(texts).map(str.encode), spoilt(texts)), MANY)
+    meets("study", tables(STUDY_TEXTS).map(str.encode) | spoilt(STUDY_TEXTS), EXAMPLES)
