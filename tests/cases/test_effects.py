@@ -1,4 +1,4 @@
-"""The effects of a scene, key by key."""
+"""The effects of a scene, key by key: pillars and rock masses call them by the same names."""
 
 import pytest
 
@@ -6,8 +6,13 @@ from jointwave.cases.effects import active_effects, effects, is_spatial
 
 ACROSS = {"load.direction": [1.0, 0.0, 0.0]}
 DOWN = {"direction": [0, -1, 0], "static": False}
-TENSILE = {"joints.tensile_strength": 1e5, "joints.fracture_energy": 10.0}
-RAYLEIGH = {"frequencies": [10.0, 20.0], "ratios": [0.02, 0.02]}
+RUBS = {"friction_angle": 30.0}
+WEAKENS = RUBS | {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
+DILATES = RUBS | {"dilation_angle": 5.0, "dilation_distance": 1e-2}
+BREAKS = {"tensile_strength": 1e5, "fracture_energy": 10.0}
+RATED = RUBS | {"direct_effect": 0.01, "evolution_effect": 0.015}
+RATED |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
+RAYLEIGH = {"rayleigh": {"frequencies": [10.0, 200.0], "ratios": [0.02, 0.02]}}
 
 CALLS = {
     "dashpots": {"joints.damping_ratio": 0.02},
@@ -22,30 +27,35 @@ CALLS = {
     "energy ledger": {"record.energy": True},
     "field output": {"record.fields": 0.01},
     "spatial motion": ACROSS,
-    "softening": TENSILE,
+    "softening": {"joints": BREAKS},
     "mass damping": {"damping": {"mass_proportional": 5.0}},
     "local damping": {"damping": {"local": 0.8}},
     "constant Q": {"rock.quality_factor": 20.0},
     "gravity": {"gravity": DOWN},
     "prestress": {"prestress": {"normal": 1e6}},
+    "spatial motion, finite rotation": ACROSS | {"motion.rotation": "finite"},
+    "spatial motion, slip": ACROSS | {"joints": RUBS},
+    "spatial motion, slip, weakening": ACROSS | {"joints": WEAKENS},
+    "spatial motion, slip, dilation": ACROSS | {"joints": DILATES},
+    "spatial motion, slip, rate and state": ACROSS | {"joints": RATED},
+    "fixed ends, shaken base": {"ends.start": "fixed", "load.quantity": "velocity"},
+    "dashpots, mass damping": {"damping": RAYLEIGH},
+    "dashpots, joints that differ": {"soft_layers": [{"y": 20.0, "damping_ratio": 0.1}]},
 }
 
-DILATES = {"dilation_angle": 5.0, "dilation_distance": 1e-2}
-WEAKENS = {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3}
-RATED = {"direct_effect": 0.01, "evolution_effect": 0.015}
-RATED |= {"critical_slip_distance": 1e-4, "reference_rate": 1e-6}
-MORE_CALLS = {
-    ("spatial motion", "finite rotation"): ACROSS | {"motion.rotation": "finite"},
-    ("spatial motion", "slip"): ACROSS | {"joints.friction_angle": 30.0},
-    ("spatial motion", "slip", "weakening"): ACROSS
-    | {"joints": {"friction_angle": 30.0, **WEAKENS}},
-    ("spatial motion", "slip", "dilation"): ACROSS
-    | {"joints": {"friction_angle": 30.0, **DILATES}},
-    ("spatial motion", "slip", "rate and state"): ACROSS
-    | {"joints": {"friction_angle": 30.0, **RATED}},
-    ("fixed ends", "shaken base"): {"ends.start": "fixed", "load.quantity": "velocity"},
-    ("dashpots", "mass damping"): {"damping": {"rayleigh": RAYLEIGH}},
-}
+
+@pytest.mark.parametrize("names", CALLS)
+def test_a_key_of_a_pillar_calls_for_its_effects_alone(scene_with, names):
+    nothing = {"record.energy": False}
+    assert active_effects(scene_with(**nothing)) == []
+    assert active_effects(scene_with(**nothing | CALLS[names])) == names.split(", ")
+
+
+def test_every_effect_is_called_for_above_and_says_why(scene_with):
+    every = effects(scene_with())
+    assert {one.name for one in every} == {name for names in CALLS for name in names.split(", ")}
+    assert all(one.reason for one in every)
+
 
 SPATIAL = {
     "the load has a component across the axis": ACROSS,
@@ -57,28 +67,11 @@ SPATIAL = {
 }
 
 
-@pytest.mark.parametrize("name", CALLS)
-def test_one_key_calls_for_one_effect(scene_with, name):
-    nothing = {"record.energy": False}
-    assert active_effects(scene_with(**nothing)) == []
-    assert active_effects(scene_with(**nothing | CALLS[name])) == [name]
-
-
-@pytest.mark.parametrize("names", MORE_CALLS)
-def test_effects_that_come_with_others(scene_with, names):
-    assert active_effects(scene_with(**{"record.energy": False} | MORE_CALLS[names])) == [*names]
-
-
-def test_every_effect_is_called_for_above(scene_with):
-    called = {*CALLS, *(name for names in MORE_CALLS for name in names)}
-    assert {effect.name for effect in effects(scene_with())} == called
-
-
 @pytest.mark.parametrize("reason", SPATIAL)
-def test_what_takes_a_scene_off_its_axis(scene_with, reason):
+def test_what_takes_a_pillar_off_its_axis(scene_with, reason):
     scene = scene_with(**SPATIAL[reason])
+    reasons = {one.name: one.reason for one in effects(scene)}
     assert is_spatial(scene)
-    reasons = {effect.name: effect.reason for effect in effects(scene)}
     assert reasons["spatial motion"] == f"{reason}: 6 degrees of freedom"
 
 
@@ -86,29 +79,60 @@ def test_axial_gravity_and_a_load_against_the_axis_stay_axial(scene_with):
     assert not is_spatial(scene_with(gravity=DOWN, **{"load.direction": [0, -1, 0]}))
 
 
-def test_blocks_that_do_not_turn_have_three_freedoms(scene_with):
-    scene = scene_with(**ACROSS, **{"motion.rotation": "none"})
-    reasons = {effect.name: effect.reason for effect in effects(scene)}
-    assert reasons["spatial motion"].endswith("3 degrees of freedom")
-
-
-def test_nothing_shears_the_joints_of_an_axial_scene(scene_with):
-    scene = scene_with(**{"joints.friction_angle": 30.0, "motion.rotation": "finite"})
-    reasons = {effect.name: effect.reason for effect in effects(scene) if not effect.active}
+def test_reasons_of_blocks_that_do_not_turn_and_of_one_joint(scene_with):
+    """Nothing shears the joints of an axial scene; a layer may be the only one without tension."""
+    still = effects(scene_with(**ACROSS, **{"motion.rotation": "none"}))
+    (spatial,) = (one for one in still if one.name == "spatial motion")
+    assert spatial.reason.endswith("3 degrees of freedom")
+    layers = [{"y": 20.0, "tension": False}]
+    scene = scene_with(soft_layers=layers, joints=RUBS, **{"motion.rotation": "finite"})
+    reasons = {one.name: one.reason for one in effects(scene)}
     assert reasons["slip"] == "the joints carry no shear"
     assert reasons["finite rotation"] == "the blocks do not rotate"
-
-
-def test_a_layer_may_be_the_only_joint_with_a_dashpot(scene_with):
-    scene = scene_with(soft_layers=[{"y": 20.0, "damping_ratio": 0.1}])
-    assert "dashpots" in active_effects(scene)
-
-
-def test_a_layer_may_be_the_only_joint_without_tension(scene_with):
-    scene = scene_with(soft_layers=[{"y": 20.0, "tension": False}])
-    reasons = {effect.name: effect.reason for effect in effects(scene)}
     assert reasons["no tension"] == "1 of 99 joints"
 
 
-def test_every_effect_says_why(scene_with):
-    assert all(effect.reason for effect in effects(scene_with()))
+BASE = {"kind": "base", "side": "bottom", "direction": [1.0, 0.0], "quantity": "velocity"}
+BASE |= {"shape": "step", "amplitude": 1.0}
+#: What each joint set, or the whole scene, calls for besides its waves, quiet sides and ledger.
+OF_SETS = {
+    "dashpots": {"damping_ratio": 0.02},
+    "no tension": {"tension": False},
+    "closure": {"maximum_closure": 1e-3},
+    "slip": {"cohesion": 0.0},
+    "slip, weakening": WEAKENS,
+    "slip, dilation": DILATES,
+    "softening": BREAKS,
+}
+OF_ROCK = {
+    "dashpots, mass damping": {"damping": RAYLEIGH},
+    "field output": {"record__fields": 1e-3},
+    "mass damping": {"damping__mass_proportional": 1.0},
+    "local damping": {"damping__local": 0.8},
+    "gravity": {"gravity": {"static": False}},
+    "prestress": {"prestress": {"xx": 1e6, "yy": 2e6}},
+    "fixed sides": {"boundaries__top": "fixed"},
+    "periodic sides": {"boundaries__left": "periodic", "boundaries__right": "periodic"},
+    "shaken base, fixed sides": {"waves": [], "boundaries__bottom": "fixed", "loads": [BASE]},
+}
+ALWAYS = {"incident waves", "quiet sides", "energy ledger"}
+
+
+@pytest.mark.parametrize("names", OF_SETS)
+def test_an_effect_of_joints_names_its_sets(mass, names):
+    scene = mass(**{f"joint_sets__0__{key}": value for key, value in OF_SETS[names].items()})
+    assert {*active_effects(scene)} == ALWAYS | {*names.split(", ")}
+    found = [one for one in effects(scene) if one.name in names.split(", ")]
+    assert all(one.reason.endswith(": joint") for one in found)
+
+
+@pytest.mark.parametrize("names", OF_ROCK)
+def test_a_key_of_a_rock_mass_calls_for_its_effects_alone(mass, names):
+    scene = mass(**OF_ROCK[names])
+    without = {"incident waves"} if "shaken" in names else set()
+    assert {*active_effects(scene)} == ALWAYS - without | {*names.split(", ")}
+
+
+def test_a_plain_rock_mass_calls_for_its_sides_its_waves_and_its_ledger(mass):
+    assert active_effects(mass()) == ["incident waves", "quiet sides", "energy ledger"]
+    assert active_effects(mass(record__energy=False)) == ["incident waves", "quiet sides"]

@@ -1,57 +1,33 @@
-"""The contact points of a face: area, bending stiffness, symmetry."""
+"""The contact points of faces: what their rules integrate, and the moments of any convex face."""
 
 import numpy as np
 import pytest
 
 from closed_forms.square_face import face_points
-from jointwave.cases.material.contact_points import bending, lever, vertex_points
-
-SIDE = 0.5
-RULES = ["midpoint", "gauss"]
+from jointwave.cases.material.contact_points import bending, lever, points_of, vertex_points
 
 
-@pytest.mark.parametrize("rule", RULES)
-@pytest.mark.parametrize("n", [1, 2, 3, 4, 7, 16])
-def test_points_share_the_whole_face(rule, n):
-    x, z, area = face_points(SIDE, n, rule)
-    assert x.shape == z.shape == area.shape == (n * n,)
-    assert (area > 0).all() and area.sum() == pytest.approx(SIDE**2, rel=1e-14)
-    assert max(np.abs(x).max(), np.abs(z).max()) < SIDE / 2
+@pytest.mark.parametrize("count", range(1, 9))
+def test_rules_integrate_what_they_should(count):
+    """Gauss: polynomials up to degree 2 n - 1; midpoint: 1 - 1/n^2 of the bending stiffness."""
+    x, w = points_of("gauss", count)
+    for degree in range(2 * count):
+        assert w @ x**degree == pytest.approx(1 / (degree + 1), rel=1e-13)
+    x, w = points_of("midpoint", count)
+    assert x == pytest.approx((np.arange(count) + 0.5) / count, rel=1e-14)
+    assert w == pytest.approx(np.full(count, 1 / count), rel=1e-14)
+    assert bending("midpoint", count) == pytest.approx(1 - 1 / count**2, rel=1e-14)
+    assert 12 * w @ (x - 0.5) ** 2 == pytest.approx(1 - 1 / count**2, abs=1e-14)
 
 
-@pytest.mark.parametrize("n", range(1, 9))
-def test_midpoints_carry_their_share_of_the_bending_stiffness(n):
-    x, z, area = face_points(SIDE, n, "midpoint")
-    expected = pytest.approx((1 - 1 / n**2) * SIDE**4 / 12, rel=1e-14, abs=1e-18)
-    assert (area * x**2).sum() == expected
-    assert (area * z**2).sum() == expected
-
-
-@pytest.mark.parametrize("n", range(2, 9))
-def test_gauss_points_carry_all_of_the_bending_stiffness(n):
-    x, z, area = face_points(SIDE, n, "gauss")
-    assert (area * x**2).sum() == pytest.approx(SIDE**4 / 12, rel=1e-13)
-    assert (area * z**2).sum() == pytest.approx(SIDE**4 / 12, rel=1e-13)
-
-
-def test_points_of_the_paper_are_the_centres_of_quarters():
-    x, z, area = face_points(SIDE, 2, "midpoint")
-    assert sorted(zip(x, z, strict=True)) == [
-        (i, j) for i in (-0.125, 0.125) for j in (-0.125, 0.125)
-    ]
-    assert (area == 0.0625).all()
-
-
-@pytest.mark.parametrize("rule", RULES)
-@pytest.mark.parametrize("n", [2, 3, 5, 16])
-@pytest.mark.parametrize(
-    "mirror", [lambda x, z: (z, x), lambda x, z: (-x, z), lambda x, z: (x, -z)]
-)
-def test_faces_are_symmetric_to_the_last_bit(rule, n, mirror):
-    x, z, area = face_points(SIDE, n, rule)
-    points = set(zip(x, z, area, strict=True))
-    assert len(points) == n * n
-    assert set(zip(*mirror(x, z), area, strict=True)) == points
+def test_the_paper_s_points_are_the_centres_of_quarters(scene_with):
+    """(2) of Guo & Li (2002), in its scenes; a scene's own default are the vertices."""
+    paper = scene_with().joints
+    assert (paper.contact_points, paper.point_rule) == (None, "midpoint")
+    x, z, area = face_points(3.0, None, "midpoint")
+    assert sorted(zip(x, z, strict=True)) == [(i, j) for i in (-0.75, 0.75) for j in (-0.75, 0.75)]
+    assert (area == 2.25).all()
+    assert scene_with(joints={}).joints.point_rule == "vertices"
 
 
 def polygon(rng, corners):
@@ -106,10 +82,10 @@ def test_triangles_and_parallelograms_have_corners_and_centroid():
 
 
 def test_vertices_of_a_square_are_those_of_any_face():
-    x, z, area = face_points(SIDE, None, "vertices")
-    corners, spread = np.stack([x, z], axis=1)[[0, 1, 3, 2]], np.eye(2) * SIDE**2 / 12
+    x, z, area = face_points(0.5, None, "vertices")
+    corners, spread = np.stack([x, z], axis=1)[[0, 1, 3, 2]], np.eye(2) * 0.5**2 / 12
     (places,), (shares,) = vertex_points(corners[None], spread[None])
-    found = zip(*places.T, SIDE**2 * shares, strict=True)
+    found = zip(*places.T, 0.5**2 * shares, strict=True)
     np.testing.assert_allclose(sorted(zip(x, z, area, strict=True)), sorted(found), rtol=1e-14)
     assert bending("vertices") == pytest.approx(1, rel=1e-15) and lever("vertices") == 1
-    assert bending("midpoint", 2) == 3 / 4 and lever("midpoint", 2) == 1 / 2
+    assert lever("midpoint", 2) == 1 / 2
