@@ -37,7 +37,7 @@ def rock_with():
             "time": {"duration": 0.01},
         }
         own |= tables
-        size = own["domain"]["size"]
+        size = own["domain"].get("size", [0.0, 0.0])
         own.setdefault("record", {"points": [[0.1, 0.2, 0.3][: len(size)]]})
         return validated(own, Path("scene.toml"), frozenset())
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import OUTSIDE, GeometryError, box
@@ -49,9 +50,9 @@ def domains(draw, most=3, dims=(1, 2, 3), rows=True):
     return dim, found
 
 
-def blocks(dim, sets, low=None, high=None):
+def blocks(dim, sets):
     """The blocks of a box; a refusal must say why, and is no example."""
-    whole = box(np.zeros(dim), SIZE[:dim]) if low is None else box(low, high)
+    whole = box(np.zeros(dim), SIZE[:dim])
     try:
         return blocks_of(cut_by_sets(whole, sets, TOLERANCE, needed=0), TOLERANCE)
     except GeometryError as error:
@@ -60,7 +61,9 @@ def blocks(dim, sets, low=None, high=None):
 
 
 @given(domains())
-def test_volumes_add_up_to_the_domain(domain):
+def test_blocks_add_up_to_the_domain_and_are_closed(domain):
+    """Volumes, and first and second moments; every facet has one owner or two, whose areas are one
+    array, and n A vanishes in sum around each block."""
     dim, sets = domain
     found = blocks(dim, sets)
     volume = np.prod(SIZE[:dim])
@@ -71,13 +74,6 @@ def test_volumes_add_up_to_the_domain(domain):
     )
     expected = volume * (np.outer(SIZE, SIZE) / 4 + np.diag(SIZE**2 / 12))[:dim, :dim]
     np.testing.assert_allclose(second, expected, rtol=1e-11)
-
-
-@given(domains())
-def test_every_facet_has_one_owner_or_two_and_every_block_is_closed(domain):
-    """The areas of both sides are one array; n A vanishes in sum around each block."""
-    dim, sets = domain
-    found = blocks(dim, sets)
     assert (found.body.sides != OUTSIDE).any(axis=1).all()
     closed(found, 1e-12 * SIZE[:dim].prod())
     contacts = found.contacts
@@ -103,9 +99,8 @@ def test_euler_s_formula_for_the_domain_and_for_each_block(domain):
 
 @given(domains(dims=(2, 3)))
 def test_moments_are_those_of_intersected_half_spaces(domain):
-    """Against Qhull: the hull of the corners that the planes of a block's faces meet at."""
-    from scipy.spatial import ConvexHull, HalfspaceIntersection
-
+    """Against Qhull: the hull of the corners that the planes of a block's faces meet at; those of
+    contacts by their outlines."""
     dim, sets = domain
     found = blocks(dim, sets)
     block, normal, outlines = found.faces(TOLERANCE)
@@ -122,16 +117,9 @@ def test_moments_are_those_of_intersected_half_spaces(domain):
         second += np.einsum("n,ni,nj->ij", share, total, total)
         assert volume.sum() == pytest.approx(found.volume[k], rel=1e-8)
         np.testing.assert_allclose(second, found.second_moment[k], atol=1e-8)
-
-
-@given(domains(dims=(2, 3)))
-def test_moments_of_outlines_are_those_of_their_facets(domain):
-    dim, sets = domain
-    contacts = blocks(dim, sets).contacts
-    assume(len(contacts))
-    m = outline_moments(contacts.outlines)
-    np.testing.assert_allclose(m.size, contacts.area, atol=1e-10)
-    np.testing.assert_allclose(m.second, contacts.second_moment, atol=1e-10)
+    moments = outline_moments(found.contacts.outlines)
+    np.testing.assert_allclose(moments.size, found.contacts.area, atol=1e-10)
+    np.testing.assert_allclose(moments.second, found.contacts.second_moment, atol=1e-10)
 
 
 @given(domains(dims=(2, 3), rows=False), st.integers(0, 1))
@@ -177,12 +165,12 @@ def test_prisms_are_taken_out_of_space():
     assert found.boundary.area[wall].sum() == pytest.approx(2 * area + 6 * 0.4 * 1.1, rel=1e-12)
 
 
-@given(domains(dims=(2, 3)))
-def test_slivers_are_merged_or_refused_with_place_and_cause(domain):
+@given(domain=domains(dims=(2, 3)), merge=st.booleans())
+def test_slivers_are_merged_or_refused_with_place_and_cause(domain, merge):
     dim, sets = domain
     body = blocks(dim, sets).body
     try:
-        found = without_slivers(body, 0.05, 5.0, True, TOLERANCE)
+        found = without_slivers(body, 0.05, 5.0, merge, TOLERANCE)
     except GeometryError as error:
         assert ((error.at >= 0) & (error.at <= SIZE[:dim])).all() and "least_width" in error.cause
         return

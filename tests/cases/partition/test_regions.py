@@ -33,9 +33,8 @@ def test_layers_share_the_domain_by_their_areas(rectangle, joints, dip):
     assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx([24, 24, 32], rel=1e-12)
     welded = between(found)
     assert (found.contacts.joint_set[welded] == NO_SET).all()
-    assert found.contacts.area[welded].sum() == pytest.approx(
-        2 * 8 / np.cos(np.radians(dip)), rel=1e-12
-    )
+    length = 2 * 8 / np.cos(np.radians(dip))
+    assert found.contacts.area[welded].sum() == pytest.approx(length, rel=1e-12)
     assert (found.body.region == region_at(layers, found.centroid)).all()
 
 
@@ -70,9 +69,8 @@ def test_a_joint_along_a_boundary_is_what_that_is(rectangle, joints):
 
 def test_slivers_are_joined_to_rock_of_their_own(rectangle, joints):
     """A bed of a millimetre above the boundary becomes a part of the region's next one."""
-    found = cut(
-        rectangle(4.0, 6.0), [joints("bed", 0.0, spacing=2.0)], (), [region("upper", 1.999)]
-    )
+    beds = joints("bed", 0.0, spacing=2.0)
+    found = cut(rectangle(4.0, 6.0), [beds], (), [region("upper", 1.999)])
     assert of_region(found, 0) == pytest.approx(4 * 4.001, rel=1e-12)
     assert found.volume.min() > 7.9
 
@@ -92,9 +90,8 @@ def test_an_outline_holds_its_own_area(rectangle, joints, corners):
     both = [region("upper", 8.0), Region(name="lens", outline=corners)]
     domain = rectangle(10.0, 10.0, non_convex="cut", least_width=1e-3)
     found = cut(domain, sets, (), both)
-    assert [of_region(found, k) for k in (ROCK, 0, 1)] == pytest.approx(
-        [80 - area, 20, area], rel=1e-12
-    )
+    areas = [of_region(found, k) for k in (ROCK, 0, 1)]
+    assert areas == pytest.approx([80 - area, 20, area], rel=1e-12)
     assert (found.body.region == region_at(both, found.centroid)).all()
     welded = between(found) & (found.body.region[found.contacts.blocks] == 1).any(axis=1)
     assert found.contacts.area[welded].sum() == pytest.approx(around, rel=1e-12)
