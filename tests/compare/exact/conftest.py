@@ -16,7 +16,6 @@ PILLAR: dict[str, Any] = {
     "time": {"duration": 0.12},
     "record": {"stress": [20.0], "velocity": [0.0, 20.0, 33.3]},
 }
-SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
 
 
 @pytest.fixture
@@ -43,9 +42,3 @@ def misfit() -> Callable[..., float]:
         return float(np.linalg.norm(a - b) / np.linalg.norm(b))
 
     return relative
-
-
-@pytest.fixture
-def soft() -> list[dict[str, float]]:
-    """Return the paper's soft layer."""
-    return [dict(layer) for layer in SOFT]

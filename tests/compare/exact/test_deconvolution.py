@@ -73,18 +73,6 @@ def test_layers_give_back_the_pulse(solver, more):
     assert np.abs(found - pulse)[: len(found) // 2].max() < 3e-5 * PULSE.amplitude
 
 
-def test_uniform_rock_halves_the_record_and_moves_it():
-    scene = column()
-    dt = 10.0 / calibrate(scene).bar_speed / 40  # a wave takes 40 samples
-    time = dt * np.arange(400)
-    record = xr.DataArray(
-        Gabor(2.0, 40 * dt, 2).value(time), {"time": time}, attrs={"units": "m/s"}
-    )
-    found = deconvolve(scene, record)
-    assert found.time.values[0] == pytest.approx(-40 * dt) and found.attrs == record.attrs
-    assert found.values[:-40] == pytest.approx(record.values / 2, abs=1e-12)
-
-
 def test_a_sheared_column_gives_back_what_rigid_blocks_were_given():
     """Early by d / 4 c (`verification/test_compliant_base`), beside what their quiet end returns,
     tan(k d / 4) of what comes down, and pi^3 N (d / lambda)^2 / 3 of phase over the N = 2.5 waves

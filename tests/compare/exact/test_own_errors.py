@@ -28,15 +28,6 @@ def holds(found, name, exact, sharp=1e-9):
     assert (bound <= sharp * np.abs(waves).max()).all()
 
 
-def random_load(r):
-    period = r.uniform(0.002, 0.02)
-    return [
-        {"shape": "sine", "period": period, "cycles": int(r.integers(1, 4)), "amplitude": 1e6},
-        {"shape": "ricker", "period": period, "amplitude": 1e6},
-        {"shape": "step", "amplitude": 1e6},
-    ][r.integers(3)]
-
-
 def random_table(scene, seed):
     """Return a row of rigid blocks with any load, ends, dashpots and a soft layer."""
     r = np.random.default_rng(seed)
@@ -51,31 +42,37 @@ def random_table(scene, seed):
         time={"duration": r.uniform(0.02, 0.08)},
         record={"stress": [0.0, 0.7, 1.0], "velocity": [0.0, 0.6, 1.4], "interval": 2e-4},
     ).model_dump(exclude_none=True)
-    return table | {"load": random_load(r)}
+    period = r.uniform(0.002, 0.02)
+    load = [
+        {"shape": "sine", "period": period, "cycles": int(r.integers(1, 4))},
+        {"shape": "ricker", "period": period},
+        {"shape": "step"},
+    ][r.integers(3)]
+    return table | {"load": load | {"amplitude": 1e6}}
 
 
-@pytest.fixture
-def extended():
-    """Skip where there is no floating-point number finer than double precision."""
-    if np.finfo(np.longdouble).eps > 1e-18:
-        pytest.skip("no extended precision here")
+#: Where there is no floating-point number finer than double precision.
+extended = pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="no extended precision")
 
 
+@extended
 @pytest.mark.parametrize(
     "seed",
     [*range(5), 8, *(pytest.param(s, marks=pytest.mark.slow) for s in (5, 6, 7, *range(9, 80)))],
 )
-def test_of_the_lattice(scene, extended, seed):
+def test_of_the_lattice(scene, seed):
     """Against Taylor series of the chain in extended precision."""
     at = Scene.model_validate(random_table(scene, seed))
     model, times, signal = system_of(at), sample_times(at), drive(at)
     fine = integrate(model, signal, times.astype(np.longdouble), at.load.period).states
+    found = row_of_blocks.solve(at)
     for name, waves in receivers(at, model, fine.astype(float)).items():
-        holds(row_of_blocks.solve(at), name, waves)
+        holds(found, name, waves)
 
 
+@extended
 @pytest.mark.parametrize("seed", range(3))
-def test_of_the_spatial_lattice(scene, extended, seed):
+def test_of_the_spatial_lattice(scene, seed):
     """A step across, off the centre, by Taylor series of each plane in extended precision."""
     table = random_table(scene, seed)
     table["load"] = {"shape": "step", "amplitude": 1e6, "direction": [0.6, 0, 0.8], "at": [0.1, 0]}

@@ -19,9 +19,6 @@ import numpy as np
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.periodic import contacts_across
-from jointwave.cases.partition.scene import blocks_of_domain
-from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint import JointSet
 from jointwave.compare.exact.blocks.system import Contacts, contacts_of, relative, resistance
 
 
@@ -92,73 +89,6 @@ def periodic(
     shifts = [np.tile(shift, (len(facets), 1)) for facets, shift in parts]
     whole = Contacts(*map(np.concatenate, zip(*contacts, strict=True)))
     return Cell(masses(blocks, density), whole, np.concatenate(shifts))
-
-
-def cell_of(
-    blocks: Blocks,
-    chosen: Sequence[int],
-    vectors: np.ndarray,
-    density: float,
-    springs: np.ndarray,
-    bending: float = 1.0,
-) -> Cell:
-    """Return the cell of some blocks that repeat along lattice vectors [d, d], m; all that they
-    touch must be there."""
-    own, centre = np.asarray(chosen), blocks.centroid
-    apart = (centre[:, None] - centre[own]) @ np.linalg.inv(vectors)
-    like = np.abs(apart - np.rint(apart)).max(axis=2).argmin(axis=1)
-    moved = np.rint(apart[np.arange(len(like)), like]) @ vectors
-    i, j = blocks.contacts.blocks.T
-    # A contact of two chosen blocks is in the cell once, one with another block twice, as its own
-    # image is seen from there.
-    weight = (np.isin(i, own) + np.isin(j, own).astype(float)) / 2
-    found = _contacts(blocks, blocks.contacts, springs, bending, 0.0)
-    found = found._replace(
-        blocks=like[found.blocks],
-        area=weight * found.area,
-        second=weight[:, None, None] * found.second,
-    )
-    kept, shift = weight > 0, moved[j] - moved[i]
-    return Cell(masses(blocks, density)[own], Contacts(*(x[kept] for x in found)), shift[kept])
-
-
-def brickwork(
-    size: Sequence[float],
-    offset: float,
-    density: float,
-    head: tuple[float, float],
-    bed: tuple[float, float],
-    bending: float = 1.0,
-    courses: int = 1,
-) -> Cell:
-    """Return courses of equal bricks, each shifted against the one below, by one brick of so many
-    courses; in the plane or, with collar joints like beds, in space.
-
-    size : of a brick: along the courses, (through,) up, m. offset : of a course against that below
-    it over the length, 0 (a stack) to 1; 0.5 is running bond. head, bed : normal and shear
-    stiffness of the upright and the lying joints, Pa/m.
-    """
-    along, *through, up = size
-    sets = [("bed", 0.0, 0.0, up), ("head", 90.0, 90.0, along)]
-    sets += [("collar", 90.0, 0.0, y) for y in through]
-    tables = [
-        {"name": name, "dip": dip, "spacing": spacing}
-        | {"normal_stiffness": 1.0, "shear_stiffness": 1.0}
-        | ({"dip_direction": direction} if through else {})
-        | ({"ends_at": ["bed"], "offset": offset} if name == "head" else {})
-        for name, dip, direction, spacing in sets
-    ]
-    space = {"dimension": len(size)}
-    sets = [JointSet.model_validate(table, context=space) for table in tables]
-    blocks = blocks_of_domain(Domain(size=[5 * along, *(3 * x for x in through), 4 * up]), sets)
-    middle = np.array([2.5 * along, *(1.5 * x for x in through), 1.5 * up])
-    vectors, step = np.diag([along, *through, courses * up]), np.zeros(len(size))
-    vectors[-1, 0] = courses * offset % 1 * along
-    step[[0, -1]] = offset * along, up
-    first = np.linalg.norm((blocks.centroid - middle) / size, axis=1).argmin()
-    places = blocks.centroid[first] + np.arange(courses)[:, None] * step
-    chosen = [np.linalg.norm(blocks.centroid - x, axis=1).argmin() for x in places]
-    return cell_of(blocks, chosen, vectors, density, np.array([bed, head, bed]), bending)
 
 
 def masses(blocks: Blocks, density: float) -> np.ndarray:

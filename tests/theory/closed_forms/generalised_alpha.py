@@ -6,9 +6,8 @@ A mode of frequency omega and damping ratio xi, q'' + 2 xi omega q' + omega^2 q 
     (1 - alpha_m) a' + alpha_m a + (1 - alpha_f) g' + alpha_f g = (1 - alpha_f) F' + alpha_f F,
 
 g = 2 xi omega v + omega^2 q (Chung & Hulbert, J. Appl. Mech. 60, 1993). One step multiplies
-(q, dt v, dt^2 a) by the amplification matrix; its eigenvalues hold all that the method does to
-the mode: stability, numerical damping, and the error of the period (Hughes, The Finite Element
-Method, 2000, section 9.3). Constants are (alpha_m, alpha_f, beta, gamma), x = omega dt.
+(q, dt v, dt^2 a) by the amplification matrix, whose eigenvalues decide on stability (Hughes, The
+Finite Element Method, 2000, section 9.3). Constants are (alpha_m, alpha_f, beta, gamma), x = omega dt.
 
 Linear undamped systems decouple into such modes (`leapfrog.modes`), and so do those with dashpots
 in proportion to their springs, xi = eta omega / 2.
@@ -47,43 +46,6 @@ def spectral_radius(
     Takes what `amplification` takes.
     """
     return np.abs(np.linalg.eigvals(amplification(constants, x, xi))).max(axis=-1)
-
-
-def frequency(
-    constants: Constants, x: np.ndarray | float, xi: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Return dt times the complex frequency s of the discrete motion exp(s t), per step.
-
-    The exact one is (-xi + i sqrt(1 - xi^2)) x; x > 0 and xi < 1. It is the logarithm of the
-    principal root, the one of the complex pair that turns forwards.
-    """
-    roots = np.linalg.eigvals(amplification(constants, x, xi))
-    principal = np.argmax(roots.imag, axis=-1)[..., None]
-    return np.log(np.take_along_axis(roots, principal, axis=-1)[..., 0])
-
-
-def damping_ratio(
-    constants: Constants, x: np.ndarray | float, xi: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Return the damping ratio of the discrete motion, -Re s / |s|; xi for small steps.
-
-    Without physical damping it starts as ((1 - rho) / (1 + rho))^3 x^3 / 2 for the constants of
-    spectral radius rho (derived for this project).
-    """
-    s = frequency(constants, x, xi)
-    return -s.real / np.abs(s)
-
-
-def period_error(
-    constants: Constants, x: np.ndarray | float, xi: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Return how much longer the discrete period is than the true one, relative to it.
-
-    Without damping it starts as (11 - 14 rho + 11 rho^2) / (1 + rho)^2 x^2 / 24, x^2 / 12 for the
-    trapezoidal rule (derived for this project).
-    """
-    exact = np.sqrt(1 - np.asarray(xi) ** 2) * x
-    return exact / frequency(constants, x, xi).imag - 1
 
 
 def response(

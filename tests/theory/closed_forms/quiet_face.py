@@ -1,52 +1,31 @@
 """Reflection of P and SV waves from a viscous boundary, against the angle.
 
-Dashpots on the face, outward normal n: sigma_nn = -alpha rho a v_n, sigma_tn = -beta rho b v_t
-(Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969; alpha = beta = 1 is theirs). Waves travel
-along +n, reflections along -n, axes and polarisations as in `waves`; with C = cos 2 phi,
-S = sin 2 phi, X = 2 s c the amplitudes of particle velocity satisfy
+Dashpots on the face, outward normal n: sigma_nn = -rho a v_n, sigma_tn = -rho b v_t (Lysmer &
+Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969). Waves travel along +n, reflections along -n. With the
+angles theta of P and phi of SV waves, sin(phi) / b = sin(theta) / a, s = sin phi, k = cos phi,
+c = cos theta, C = cos 2 phi, S = (b/a) sin 2 phi and X = 2 s c, the amplitudes of particle velocity
+satisfy
 
-    -(C + alpha c) r_p + ((b/a) S + alpha s) r_s = C - alpha c  |  alpha s - (b/a) S
-     (X + beta a') r_p + (C + beta k) r_s        = X - beta a'  |  C - beta k
+    -(C + c) r_p + (S + s) r_s             = C - c          |  s - S
+     (X + sin theta) r_p + (C + k) r_s     = X - sin theta  |  C - k
 
-for P | SV. They do not depend on frequency. alpha = beta = 0 is a free face, infinite ones hold it.
+for P | SV. They do not depend on frequency.
 """
 
 import numpy as np
 
-from jointwave.cases.material.rock import ElasticRock, Values
-from jointwave.compare.exact.plane.waves import (
-    KINDS,
-    Kind,
-    face,
-    slowness_along,
-)
+from jointwave.cases.material.rock import ElasticRock
 
 
-def coefficients(
-    incidence: Kind, angle: Values, rock: ElasticRock, dashpots: tuple[float, float] = (1.0, 1.0)
-) -> tuple[np.ndarray, np.ndarray]:
+def coefficients(incidence: str, angle: float, rock: ElasticRock) -> np.ndarray:
     """Return the complex r_p and r_s over the incident amplitude of particle velocity.
 
-    incidence : "P" or "SV". angle : of travel from the normal, rad, broadcasts with rock.
-    dashpots : alpha and beta, 0 to inf.
+    incidence : "P" or "SV". angle : of travel from the normal, rad.
     """
-    r = reflection(rock, slowness_along(rock, incidence, angle), dashpots)
-    i = KINDS.index(incidence)
-    return r[..., 0, i], r[..., 1, i]
-
-
-def reflection(
-    rock: ElasticRock, slowness: Values, dashpots: tuple[float, float] = (1.0, 1.0)
-) -> np.ndarray:
-    """Return the matrix [..., out, in] of both incidences in the order P, SV; slowness in s/m."""
-    w = face(rock, slowness)
-    normal, n = _weighed(w.normal, w.normal_velocity, rock.p_impedance, dashpots[0])
-    shear, t = _weighed(w.shear, w.shear_velocity, rock.s_impedance, dashpots[1])
-    rows, sides = (normal - n, t - shear), (-normal - n, -t - shear)
-    return np.linalg.solve(*(np.stack(np.broadcast_arrays(*x), axis=-2) for x in (rows, sides)))
-
-
-def _weighed(traction, velocity, impedance, dashpot: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the terms of traction / Z + dashpot v = 0, over 1 + dashpot."""
-    share = 1 / (1 + dashpot)
-    return share * traction / np.asarray(impedance)[..., None], (1 - share) * velocity
+    a, b = rock.p_speed, rock.s_speed
+    slowness = np.sin(angle) / (a if incidence == "P" else b)
+    s, along = b * slowness, a * slowness
+    c, k = np.sqrt(1 - along**2 + 0j), np.sqrt(1 - s**2 + 0j)
+    C, S, X = 1 - 2 * s**2, 2 * s * k * b / a, 2 * s * c
+    sides = [C - c, X - along] if incidence == "P" else [s - S, C - k]
+    return np.linalg.solve([[-(C + c), S + s], [X + along, C + k]], sides)

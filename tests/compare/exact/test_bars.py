@@ -1,6 +1,7 @@
-"""The Laplace bars against parallel joints, attenuation, images of other loads, and each other."""
+"""Bars by images, by modes and in the Laplace variable: closed forms and bounds of errors."""
 
 from dataclasses import replace
+from math import pi
 
 import numpy as np
 import pytest
@@ -8,27 +9,101 @@ import pytest
 from closed_forms.parallel_joints import transmission
 from jointwave.cases import Scene
 from jointwave.cases.histories import Recorded, Sine, Step
-from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.exact.bar import images, laplace
-from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED, bar_of
-from jointwave.compare.exact.bar.modes import solve_damped, sums
+from jointwave.compare.exact.bar import images, laplace, modes
+from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED
 from jointwave.compare.exact.bar.transfer import Bar, End, RockFrom, transfer
+from jointwave.compare.exact.joint import one_joint
 
+FIELDS = ("stress", "velocity", "displacement")
+LENGTH, SPEED = 50.0, np.sqrt(2 * 800.0**2 * (1 + 0.423809523809524))  # of the pillar, m and m/s
 NONE = np.zeros(0)
 ROCK = Bar(1000.0, (RockFrom(0.0, 2400.0, 4e9, 0.0),), NONE, NONE, NONE, End(0.0), End(0.0))
 Z = np.sqrt(2400.0 * 4e9)
 
 
-def wavenumber(omega: np.ndarray | float, speed: float, eta: float) -> np.ndarray:
-    """Return k (1/m) of e^{i(omega t - k y)}: k = omega / (c sqrt(1 + i omega eta)).
-
-    The phase speed is omega / Re k and the attenuation -Im k, about omega^2 eta / 2c.
-    """
-    return np.asarray(omega / (speed * np.sqrt(1 + 1j * np.asarray(omega) * eta)))
+def pulse(t):
+    return np.where((t > 0) & (t < 0.01), np.sin(2 * pi * t / 0.01), 0.0)
 
 
-@pytest.mark.parametrize("count", [2, 3, 5])
-@pytest.mark.parametrize("ratio", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("end, sign", [("free", -1), ("fixed", 1)])
+def test_a_pulse_arrives_and_an_end_returns_it_with_its_sign(scene, end, sign):
+    """At y/c with the load's shape. Free ends turn compression into tension, fixed ends return it
+    as it came; at that end the free one doubles the velocity and the fixed one the stress."""
+    record = {"stress": [20.0, LENGTH], "velocity": [LENGTH]}
+    result = images.solve(scene(ends={"end": end}, record=record, time={"duration": 0.07}))
+    t = result.time.values
+    back = sign * pulse(t - (2 * LENGTH - 20) / SPEED)
+    expected = 1e6 * (pulse(t - 20 / SPEED) + back)
+    assert np.abs(result.stress.values[0] - expected).max() < 1e-6 * 1e6
+    at_end = pulse(t - LENGTH / SPEED)
+    assert result.stress.values[1] == pytest.approx((1 + sign) * 1e6 * at_end, abs=1)
+    v = result.velocity.values[0, :, 0]
+    assert v == pytest.approx((1 - sign) * 1e6 / (2400 * SPEED) * at_end, abs=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["quiet", "matched"])
+def test_a_dashpot_at_the_start_takes_half_and_returns_nothing(scene, kind):
+    free = images.solve(scene(time={"duration": 0.08}))
+    quiet = images.solve(scene(time={"duration": 0.08}, ends={"start": kind}))
+    once = free.time.values < (100 + 20) / 1350
+    assert np.allclose(quiet.stress[:, once], free.stress[:, once] / 2)
+    silent = images.solve(scene(ends={"start": kind, "end": kind}))
+    assert np.abs(silent.stress[0, silent.time.values > 0.03]).max() == 0
+
+
+def test_the_series_is_as_far_off_as_its_truncation(scene, misfit):
+    """100 terms 0.585 %, 2000 terms 0.014 %, at y = 20 m, 0-0.12 s, T = 10 ms. Half a unit
+    of the last digit but one: the misfit gathers at the kinks, so sampling moves it by 0.4 %."""
+    at = scene(record={"velocity": []})
+    exact = images.solve(at)
+    assert misfit(modes.solve(at, modes.PAPER_TERMS), exact) == pytest.approx(5.85e-3, abs=5e-5)
+    assert misfit(modes.solve(at), exact) == pytest.approx(1.4e-4, abs=5e-6)
+
+
+@pytest.mark.parametrize("cycles, mode", [(1, None), (1, 7), (3, 7)])
+def test_the_series_holds_for_cycles_and_at_resonance(scene, misfit, cycles, mode):
+    """Stress: the 2000 terms' 0.014 %. Velocity jumps in slope at y = 0, where 2000 terms of 1/n^2
+    leave 6e-4; displacement, one integral smoother but with the same steps in time, 4e-4."""
+    load = {"cycles": cycles, "period": 0.01 if mode is None else 100 / SPEED / mode}
+    at = scene(load=load, record={"interval": 5e-5})
+    exact, sum_of_modes = images.solve(at), modes.solve(at)
+    for variable, bound in zip(FIELDS, (1.5e-4, 8e-4, 5e-4), strict=True):
+        assert misfit(sum_of_modes, exact, variable) < bound
+
+
+ENDS = [("free", "free"), ("free", "fixed"), ("free", "quiet"), ("quiet", "free")]
+
+
+@pytest.mark.parametrize("start, end", [*ENDS, ("matched", "fixed")])
+def test_the_laplace_bar_agrees_with_images_at_every_end(scene, misfit, start, end):
+    """Well below 0.2 %: the rules of `laplace` promise 0.009 % (seen: stress 0.001 %,
+    velocity, whose kinks at y = 0 fall on samples, up to 0.006 %)."""
+    at = scene(ends={"start": start, "end": end})
+    a, b = EQUIVALENT.run(at), images.solve(at)
+    assert max(misfit(a, b, variable) for variable in FIELDS) < 9e-5
+
+
+@pytest.mark.parametrize("zeta", [None, 0.02, 0.5])
+@pytest.mark.parametrize(
+    "start, end, duration", [("quiet", "matched", 0.12), ("free", "quiet", 0.029)]
+)
+def test_the_laplace_bar_agrees_with_one_joint(scene, misfit, zeta, start, end, duration):
+    """0.009 % by the rules of `laplace`. Velocity on the layer is the mean of both sides."""
+    layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
+    layer |= {} if zeta is None else {"damping_ratio": zeta}
+    at = scene(
+        soft_layers=[layer],
+        ends={"start": start, "end": end},
+        time={"duration": duration},
+        record={"stress": [5.0, 20.0, 41.3], "velocity": [0.0, 19.75, 20.0, 33.3]},
+    )
+    assert one_joint.applies(at)
+    a, b = one_joint.solve(at), EQUIVALENT.run(at)
+    assert max(misfit(a, b, variable) for variable in FIELDS) < 9e-5
+
+
+@pytest.mark.parametrize("count", [2, 5])
+@pytest.mark.parametrize("ratio", [0.05, 0.2])
 def test_parallel_joints_transmit_as_in_closed_form(count, ratio):
     """|T| at kappa = K/(Z omega) = 1, by spacing over wavelength; a wave of 1 enters the bar behind
     a dashpot for an end stress of 2."""
@@ -48,11 +123,12 @@ def test_parallel_joints_transmit_as_in_closed_form(count, ratio):
 
 
 def test_a_damped_wave_decays_and_disperses_as_its_wavenumber():
-    """Between two receivers of a bar so long that nothing comes back: e^{-i k (y2 - y1)}."""
+    """Between two receivers of a bar so long that nothing comes back: e^{-i k (y2 - y1)} with
+    k = omega / (c sqrt(1 + i omega eta)) of e^{i(omega t - k y)}."""
     omega, eta = np.array([200.0, 2000.0]), 1e-3
     bar = replace(ROCK, length=1e6, rocks=(RockFrom(0.0, 2400.0, 4e9, eta),))
     stress, _ = transfer(bar, 1j * omega, np.array([3.0, 10.0]))
-    k = wavenumber(omega, np.sqrt(4e9 / 2400), eta)
+    k = omega / np.sqrt(4e9 / 2400 * (1 + 1j * omega * eta))
     assert np.allclose(stress[1] / stress[0], np.exp(-7j * k), rtol=1e-12)
 
 
@@ -121,7 +197,7 @@ def test_the_bound_of_the_error_holds(scene, tmp_path, monkeypatch, seed):
     monkeypatch.setattr(laplace, "FINER", 4 * laplace.FINER)
     monkeypatch.setattr(laplace, "TAIL", 2.5)
     finer = solution.run(at)
-    for name in ("stress", "velocity", "displacement"):
+    for name in FIELDS:
         waves, exact = (
             x[name].values.reshape(-1, len(x.time)).astype(float) for x in (found, finer)
         )
@@ -134,27 +210,10 @@ def test_the_pillar_s_stress_is_known_to_a_millionth(scene):
     """A tenth of the bounds of 1e-5 that scenes may set is then judged: inside the rock, at any
     joint and behind; in front of the first joint, where kinks return 700 times, to 1e-4."""
     found = JOINTED.run(scene(record={"velocity": [0.0, 20.0, 33.3]}))
-    for name in ("stress", "velocity", "displacement"):
+    for name in FIELDS:
         waves = found[name].values.reshape(-1, len(found.time))
         relative = found[f"{name}_error"].values.ravel() / np.sqrt((waves**2).mean(axis=1))
         assert (relative[-2:] < 1e-6).all() and (relative < 1e-4).all()
-
-
-def test_fine_joints_are_the_homogenised_bar(scene, misfit):
-    """Joints d apart that hold a share p of the compliance slow a wave by (omega d p / c)^2 / 24,
-    as cos(kd) = cos(omega d/c_0) - (omega z/2K) sin(omega d/c_0) expands. Over the 0.06 s that a
-    Ricker wavelet travels here, whose omega^3 is 2.2 omega_p^3 in the mean square, that leaves
-    2.2 omega_p 0.06 s (omega_p d p / c)^2 / 24 = 6.6e-4, and a quarter for half the spacing."""
-    off = []
-    for block in (0.25, 0.125):
-        at = scene(
-            pillar={"block": block},
-            load={"shape": "ricker", "period": 0.04},
-            record={"interval": 2e-4},
-        )
-        off.append(misfit(JOINTED.run(at), EQUIVALENT.run(at)))
-    assert off[0] < 6.6e-4
-    assert np.log2(off[0] / off[1]) == pytest.approx(2, abs=0.05)
 
 
 @pytest.mark.parametrize("zeta", [0.02, 0.1, 1.5])
@@ -162,38 +221,18 @@ def test_the_damped_bar_s_modes_agree(scene, misfit, zeta):
     """Each to its own bound; both are smooth but at y = 0, where kinks of the load fall on
     samples."""
     at = scene(joints={"damping_ratio": zeta})
-    modes, laplace_bar = solve_damped(at), EQUIVALENT.run(at)
-    for variable in ("stress", "velocity", "displacement"):
-        assert misfit(modes, laplace_bar, variable) < 9e-5
+    damped, laplace_bar = modes.solve_damped(at), EQUIVALENT.run(at)
+    for variable in FIELDS:
+        assert misfit(damped, laplace_bar, variable) < 9e-5
 
 
 def test_over_and_critically_damped_modes_satisfy_their_equation():
     """q'' + eta omega^2 q' + omega^2 q = f by differences of a fine sampling, which err by
     (dt/T)^2 about 1e-6 and amplify round-off to 1e-7."""
     load, mode, t = Sine(1.0, 0.01), 900.0, np.linspace(0, 0.0099, 20_001)
-    for ratio in (0.3, 1.0, 1.0 + 1e-8, 2.0):
+    for ratio in (1.0, 1.0 + 1e-8, 2.0):
         eta = 2 * ratio / mode
-        (q,), (rate,) = sums(np.ones((1, 1)), np.array([mode]), eta, load, t)
+        (q,), (rate,) = modes.sums(np.ones((1, 1)), np.array([mode]), eta, load, t)
         assert np.abs(np.gradient(q, t) - rate)[2:-2].max() < 1e-6 * np.abs(rate).max()
         left = np.gradient(rate, t) + eta * mode**2 * rate + mode**2 * q
         assert np.abs(left - load.value(t))[2:-2].max() < 1e-6
-
-
-def test_a_soft_layer_adds_its_excess_compliance_only(scene, soft):
-    p = calibrate(scene(soft_layers=soft))
-    bar = bar_of(scene(soft_layers=soft), resolved=False)
-    assert np.flatnonzero(bar.joint_compliance).tolist() == [39]
-    assert 1 / bar.joint_compliance[39] == pytest.approx(
-        1 / (1 / p.stiffness[39] - 0.5 / p.modulus), rel=1e-12
-    )
-    ordinary = bar_of(scene(soft_layers=[{"y": 20.0}]), resolved=False)
-    assert not ordinary.joint_compliance.any()
-
-
-def test_a_recorded_load_reaches_the_scene(scene, misfit, tmp_path):
-    """The same triangle through a scene: images and the Laplace bar."""
-    (tmp_path / "blast.csv").write_text("0,0\n0.01,1\n0.04,0\n")
-    table = scene().model_dump(exclude_none=True)
-    table["load"] = {"shape": "table", "amplitude": 1e6, "file": "blast.csv"}
-    at = Scene.model_validate(table, context={"folder": tmp_path})
-    assert misfit(EQUIVALENT.run(at), images.solve(at)) < 9e-5

@@ -1,8 +1,9 @@
-"""The slip joint: three coefficients, its energy, an implicit scheme, and its elastic limit."""
+"""Joints that slip: three coefficients, energy, an implicit scheme, rate-and-state friction."""
 
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid
+from scipy.optimize import brentq
 
 from closed_forms.one_joint import slip_coefficients
 from jointwave.cases.histories import Recorded, Ricker, Sine, Step
@@ -10,6 +11,7 @@ from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.exact.bar import images
 from jointwave.compare.exact.joint import one_joint, sliding_joint
+from jointwave.compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 from jointwave.compare.exact.joint.slip_phases import TOLERANCES, Passed, SlipJoint
 
 Z = 2400.0 * 800.0
@@ -45,14 +47,11 @@ def test_a_harmonic_wave_at_a_joint_rigid_before_slip(a, T, R, A):
     assert ratios == pytest.approx(slip_coefficients(a)[:2], abs=2e-6)
 
 
-def test_the_limits_of_strength():
-    assert slip_coefficients(0.0) == pytest.approx((0, 1, 0), abs=1e-12)
-    assert slip_coefficients(1.0) == pytest.approx((1, 0, 0), abs=1e-7)
-
-
 @pytest.mark.parametrize("load", [Sine(1.0, 0.01, 2), Ricker(1.0, 0.01), Step(1.0)])
-@pytest.mark.parametrize("tau", [0.0, 1e-5, 3e-3, 0.5, 1.0])
-@pytest.mark.parametrize("relaxation", [0.0, 1e-5, 1e-3])
+@pytest.mark.parametrize(
+    "tau, relaxation",
+    [(3e-3, 1e-5), *((tau, time) for tau in (0.0, 1e-5, 3e-3, 0.5, 1.0) for time in (0.0, 1e-3))],
+)
 def test_any_strength_is_integrated_to_the_end(load, tau, relaxation):
     """Also where a phase begins at the strength, or the load rises to it alone: an implicit scheme
     is off by its step."""
@@ -108,17 +107,6 @@ def test_an_implicit_scheme_converges_to_it_at_order_one(load):
             seen.append(s)
         errors.append(np.abs(np.array(seen)[::refine] - exact).mean())
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([1, 1], abs=0.1)
-
-
-def test_the_impulse_is_the_integral_of_the_stress():
-    load, times = Sine(1.0, 0.01, 2), np.linspace(0.0, 0.03, 3001)
-    for compliance in (0.0, 1 / (Z * OMEGA)):
-        joint = SlipJoint(0.0, compliance, 0.3)
-        _, impulse = transmitted(joint, load, times)
-        fine = np.linspace(0.0, 0.03, 300_001)
-        s, _ = transmitted(joint._replace(compliance=compliance), load, fine[::10])
-        steps = np.cumsum((s[1:] + s[:-1]) / 2 * fine[10])
-        assert np.abs(impulse[1:] - steps[9::10]).max() < 1e-6 * 0.01
 
 
 @pytest.mark.parametrize("compliance", [0.0, 1e-9])
@@ -210,3 +198,50 @@ def test_the_bound_of_its_error_holds_where_samples_are_far_apart_too(scene, int
         assert (error <= found[f"{name}_error"].values).all()
         if interval < 1e-3:
             assert found[f"{name}_error"].max() < 1e-9 * np.abs(exact).max()
+
+
+RATED = RateJoint(1e6, 0.6, 0.01, 0.015, 1e-4, 1e-6, 100.0)
+
+
+@pytest.mark.parametrize("compliance", [0.0, 1e-10])
+def test_steady_slip_of_rate_and_state_friction(compliance):
+    """2 (sigma_I - s) / Z is the rate in the end, s that of steady friction at it."""
+    times, joint = np.linspace(0.0, 0.03, 301), RATED._replace(compliance=compliance)
+    stress, impulse = RateStateWave(joint, Z, Step(1e6), 0.03, 1e-10)(times)
+
+    def left(rate):
+        return 1e6 - Z * rate / 2 - 1e6 * (0.6 - 0.005 * np.log(rate / 1e-6))
+
+    rate = brentq(left, 1e-3, 1.0)
+    assert stress[-1] == pytest.approx(1e6 - Z * rate / 2, rel=1e-7)
+    slip = 2 * (1e6 * times - impulse) / Z
+    assert np.diff(slip)[-1] / np.diff(times)[-1] == pytest.approx(rate, rel=1e-6)
+
+
+def test_the_impulse_of_rate_and_state_friction_is_that_of_its_stress():
+    """Two ways to the same number: S is integrated, the stress follows from ln theta only."""
+    times = np.linspace(0.0, 0.03, 60_001)
+    for compliance in (0.0, 1e-10):
+        joint = RATED._replace(compliance=compliance)
+        stress, impulse = RateStateWave(joint, Z, Ricker(1e6, 0.01), 0.03, 1e-11)(times)
+        sums = np.append(0.0, np.cumsum((stress[1:] + stress[:-1]) / 2 * np.diff(times)))
+        np.testing.assert_allclose(impulse, sums, rtol=0, atol=1e-6 * np.abs(impulse).max())
+
+
+def test_what_rate_and_state_friction_carries_solves_its_equation():
+    """From nothing to a hundred times the strength, and its opposite."""
+    incident = np.append(0.0, np.geomspace(1e-6, 1e8, 300))
+    carries, slides = np.vectorize(RATED.carries), np.vectorize(RATED.slides)
+    for log_state in (-20.0, 0.0, 10.0):
+        stress = carries(incident, log_state, Z)
+        left = stress + Z / 2 * slides(stress, log_state) - incident
+        assert np.abs(left).max() <= 1e-11 * 1e8 and (np.diff(stress) > 0).all()
+        assert (carries(-incident, log_state, Z) == -stress).all()
+
+
+@pytest.mark.parametrize("log_state", [-1e5, 1e5])
+@pytest.mark.parametrize("incident", [1e-320, 1e8])
+def test_what_it_carries_is_finite_where_a_trial_step_is_too_long(incident, log_state):
+    """Integration tries states of no meaning: exponentials beyond all numbers."""
+    stress = RATED.carries(incident, log_state, Z)
+    assert 0 <= stress <= incident and np.isfinite(RATED.slides(stress, log_state))
