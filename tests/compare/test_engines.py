@@ -12,27 +12,17 @@ from jointwave.compare.misfit.pairs import pairs
 from jointwave.compare.solvers.record import Form
 
 
-def test_each_name_is_that_of_its_record():
+def test_records_name_solvers_that_there_are():
     assert [one.name for one in solvers()] == [*names()]
     assert all(solver(name).exact and solver(name).form > Form.RUN for name in EXACT)
     assert all(not one.exact for one in ENGINES.values())
-
-
-def test_records_name_solvers_that_there_are():
     for one in solvers():
         assert one.label and (one.exact or one.sentence)
         for others in (one.distances or {}).values():
             assert set(others) <= set(names()) - {one.name}
     assert len(set(pairs())) == len(pairs())
-
-
-def test_every_solver_is_selected_by_one_engine_and_model():
     every = [name for models in selection().values() for name in models.values()]
-    assert sorted(every) == sorted(names())
-    assert [*selection()["exact"]] == [*EXACT]
-
-
-def test_an_unknown_name_is_an_error():
+    assert sorted(every) == sorted(names()) and [*selection()["exact"]] == [*EXACT]
     with pytest.raises(SceneError, match="'truth' is unknown; allowed: dem, continuum-jointed"):
         solver("truth")
 
@@ -46,20 +36,14 @@ def test_a_run_is_prepared_as_it_is_made(pillar, one_joint, name, kind):
         tables["joint_sets"][0]["spacing"] = 5.0
         scene = load_tables(tables)
     found, made = solver(name).prepare(scene), solver(name).run(scene).attrs
-    assert (found.steps, found.dt, found.critical) == (
-        made["steps"],
-        made["dt"],
-        made["critical_dt"],
-    )
-    assert found.freedoms == made["degrees_of_freedom"] and found.scheme == made["scheme"]
+    keys = ("steps", "dt", "critical_dt", "degrees_of_freedom", "scheme")
+    prepared = found.steps, found.dt, found.critical, found.freedoms, found.scheme
+    assert prepared == tuple(made[key] for key in keys) and found.bytes > 0
     settings = {"processes": 1} | dict(found.settings)  # their number is the command's
-    assert found.bytes > 0
     assert all(made[key] == settings[key] for key in solver(name).cost)
 
 
 def test_names_are_known_without_what_solves():
-    """Neither an exact solution, nor what it or an engine runs by, is imported for a name, not even
-    for those of one kind of scenes."""
     for kind in ("pillar", "rock mass"):
         assert set(names(kind)) == {name for name in names() if kind in solver(name).kinds}
     script = (

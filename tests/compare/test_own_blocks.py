@@ -34,7 +34,6 @@ shear_stiffness = 8e9
 """
 CUT = SCENE.replace('{ blocks = "wall.obj" }', "{ size = [4.0, 2.0] }")
 CUT += 'ends_at = ["bed"]\noffset = 0.5\n'
-MSH = SCENE.replace("wall.obj", "wall.msh")
 
 
 def wall(windows=()):
@@ -55,8 +54,6 @@ def wall(windows=()):
 
 @pytest.fixture
 def scene(tmp_path):
-    """Return a function that reads a scene beside the file of the wall."""
-
     def read(text=SCENE, blocks=None):
         (tmp_path / "wall.obj").write_text(wall() if blocks is None else blocks)
         (tmp_path / "scene.toml").write_text(text)
@@ -82,22 +79,19 @@ def test_waves_in_a_wall_of_bricks_are_those_in_the_wall_that_is_cut(name, scene
         assert off < OFF[name]
 
 
+PRESSED = """
+loads = [{ kind = "pressure", opening = 0, shape = "ricker", amplitude = 1e6, period = 4e-3 }]
+"""
+
+
 def test_a_window_is_an_opening(scene):
-    pressed = SCENE.replace("[[joint_sets]]", LOAD + "\n[[joint_sets]]", 1)
-    found = scene(pressed, wall(windows=[(1, 2)]))
+    found = scene(SCENE.replace("waves = ", PRESSED + "waves = "), wall(windows=[(1, 2)]))
     (window,) = found.domain.holes
     assert np.array(window).min(axis=0).tolist() == [1.5, 0.5]
     assert np.array(window).max(axis=0).tolist() == [2.5, 1.0]
 
 
-LOAD = """
-[[loads]]
-kind = "pressure"
-opening = 0
-shape = "ricker"
-amplitude = 1e6
-period = 4e-3
-"""
+but = SCENE.replace
 
 
 @pytest.mark.parametrize(
@@ -105,16 +99,12 @@ period = 4e-3
     [
         (SCENE, "", "domain.blocks = 'wall.obj': has no blocks"),
         (SCENE, wall() + "\no more\nf 1 2 3 4", "'brick 0 0' and 'more' overlap near ["),
-        (SCENE.replace("wall.obj", "lost.obj"), None, "domain.blocks = 'lost.obj': cannot be read"),
-        (SCENE.replace("dip = 90.0", "dip = 0.0"), None, "as near to set 'bed' as to 'head'"),
+        (but("wall.obj", "lost.obj"), None, "domain.blocks = 'lost.obj': cannot be read"),
+        (but("dip = 90.0", "dip = 0.0"), None, "as near to set 'bed' as to 'head'"),
         (SCENE + 'ends_at = ["bed"]\n', None, "has no effect: domain.blocks has the joints"),
-        (SCENE.replace("2.3, 0.25", "9.0, 0.25"), None, "record.points[0]"),
-        (
-            SCENE.replace('.obj"', '.obj", openings = [[[1.0, 1.0]]]'),
-            None,
-            "are part of domain.blocks",
-        ),
-        (SCENE.replace('.obj"', '.obj", size = [1.0, 1.0]'), None, "exactly one of domain.size"),
+        (but("2.3, 0.25", "9.0, 0.25"), None, "record.points[0]"),
+        (but('obj"', 'obj", openings = [[[1.0, 1.0]]]'), None, "are part of domain.blocks"),
+        (but('.obj"', '.obj", size = [1.0, 1.0]'), None, "exactly one of domain.size"),
     ],
 )
 def test_what_does_not_fit_blocks_is_said_in_a_line(text, blocks, words, scene):

@@ -1,5 +1,6 @@
 """Which components decide a misfit, on fields whose shares of the motion are known numbers."""
 
+from itertools import product
 from math import inf, nan
 
 import numpy as np
@@ -22,37 +23,32 @@ ROOT = float(np.sqrt((WAVE**2).mean()))
 
 def points(velocity=None, stress=None, **attrs):
     """Return a result of a rock mass with components [receiver, component], each times one wave."""
-    names = {"velocity": ("axis", ["x", "y"]), "stress": ("stress_component", ["xx", "yy", "xy"])}
+    given = [("velocity", "axis", ["x", "y"], velocity)]
+    given += [("stress", "stress_component", ["xx", "yy", "xy"], stress)]
     data, coords = {}, {"time": TIME}
-    for name, factors in (("velocity", velocity), ("stress", stress)):
+    for name, dim, components, factors in given:
         if factors is not None:
-            dim, components = names[name]
             values = np.array(factors, dtype=float)[:, None, :] * WAVE[:, None]
             data[name] = (("point", "time", dim), values)
-            coords[dim] = components
-            coords["point_x"] = ("point", np.arange(float(len(values))))
-            coords["point_y"] = ("point", np.zeros(len(values)))
+            x = np.arange(float(len(values)))
+            coords |= {dim: components, "point_x": ("point", x), "point_y": ("point", 0 * x)}
     return xr.Dataset(data, coords, {"kind": "rock mass", **attrs})
 
 
-def shares(x, y=1.0):
-    """Return components x and y of which x carries the share x of their motion."""
-    return [x, y * np.sqrt(1 - x**2)]
+def pair(one, other):
+    return points(velocity=one), points(velocity=other)
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.049, 0.01), (0.051, 0.4)])
 def test_a_component_decides_from_five_percent_of_the_motion_on(share, found):
     """The small component is 40 % off, the large one 1 %: at 4.9 % of the motion 1 % counts."""
-    x, y = shares(share)
-    far = worst(points(velocity=[[1.4 * x, 1.01 * y]]), points(velocity=[[x, y]]))
+    x, y = share, np.sqrt(1 - share**2)
+    both = pair([[1.4 * x, 1.01 * y]], [[x, y]])
+    far = worst(*both)
     assert far.misfit == pytest.approx(found) and not far.of_all
     assert far.place.component == ("x" if found == 0.4 else "y")
-    rows = {p.place.component: p for p in pairings(*pair([[1.4 * x, 1.01 * y]], [[x, y]]))}
+    rows = {p.place.component: p for p in pairings(*both)}
     assert rows["x"].misfit == pytest.approx(0.4) and rows["x"].faint == (share < 0.05)
-
-
-def pair(one, other):
-    return points(velocity=one), points(velocity=other)
 
 
 def test_motion_that_the_reference_does_not_have_counts_as_a_part_of_all_motion():
@@ -83,10 +79,11 @@ def test_at_a_free_surface_its_traction_decides_nothing():
 
 
 def test_a_receiver_without_motion_decides_nothing():
-    """At a free end stress itself is zero: half a percent of the largest stays out, two are 2 %."""
-    for spurious, misfit in ((0.005, 0.0), (0.02, 0.02)):
-        far = worst(*pair([[0.0, 1.0], [0.0, spurious]], [[0.0, 1.0], [0.0, 0.0]]))
-        assert far.misfit == pytest.approx(misfit)
+    """At a free end stress itself is zero: half a percent of the largest stays out, two are 2 %, in
+    any unit."""
+    for unit, (spurious, misfit) in product((1e-12, 1.0, 1e12), ((0.005, 0.0), (0.02, 0.02))):
+        one, other = ([[0.0, unit], [0.0, unit * small]] for small in (spurious, 0.0))
+        assert worst(*pair(one, other)).misfit == pytest.approx(misfit)
 
 
 def test_the_motion_of_a_tensor_does_not_depend_on_the_axes():
@@ -126,7 +123,6 @@ def test_peaks_are_those_of_all_components_together():
     ],
 )
 def test_a_bound_is_of_the_worst_waveform_of_a_quantity_or_a_peak(of, distance, where):
-    """Waveforms of one quantity do not hide behind those of another, nor do its peaks."""
     other = points([[0, 1], [0.6, 0.8]], [[2, 1, 0], [0, 1, 0]])
     one = points([[0, 1.1], [0.72, 0.8]], [[2, 1.5, 0], [0, 1, 0]])
     one["stress"][0, :, 0] *= 1.25
@@ -135,7 +131,6 @@ def test_a_bound_is_of_the_worst_waveform_of_a_quantity_or_a_peak(of, distance, 
 
 
 def test_a_peak_that_the_reference_does_not_have_is_within_no_bound():
-    """Where both stay at rest there is nothing to bound."""
     moving, still = points(velocity=[[0, 1]]), points(velocity=[[0, 0]])
     assert distance_of("PPV", moving, still).misfit == inf
     assert distance_of("PPV", still, moving).misfit == 1

@@ -5,12 +5,7 @@ import pytest
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare.readings.ground_motion import (
-    arias,
-    ppv,
-    ppv_map,
-    response_spectrum,
-)
+from jointwave.compare.readings.ground_motion import arias, ppv, ppv_map, response_spectrum
 
 
 def moved(velocity, dt):
@@ -25,7 +20,6 @@ def moved(velocity, dt):
 
 
 def sine(cycles, dt, speed=0.2, omega=2 * np.pi):
-    """Return whole cycles of a sine of the period 1 s."""
     return moved(speed * np.sin(omega * dt * np.arange(round(cycles / dt) + 1)), dt)
 
 
@@ -86,7 +80,6 @@ def displacement_of_sine(t, omega, damping, speed=0.2, drive=2 * np.pi, stop=4.0
     X = -speed * drive / (omega**2 - drive**2 + 2j * damping * omega * drive)
 
     def free(a, b, s):
-        """From the displacement a and the speed b, a time s later."""
         c = (b + damping * omega * a) / damped
         return np.exp(-damping * omega * s) * (a * np.cos(damped * s) + c * np.sin(damped * s))
 
