@@ -4,31 +4,29 @@ import numpy as np
 import pytest
 
 from jointwave.cases.incident import free_field, plane_wave, tractions
-from jointwave.cases.read import load
+
+WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
+S_WAVE = WAVE | {"kind": "S"}
 
 
-def scene_with(tmp_path, wave, kind="quiet"):
-    text = f"""
-title = "a wave"
-domain.size = [4.0, 3.0]
-rock = {{ density = 2000.0, intact_modulus = 5.0e10, intact_poisson = 0.25 }}
-waves = [{wave}]
-boundaries = {{ left = "{kind}", right = "{kind}", bottom = "{kind}", top = "{kind}" }}
-time.duration = 0.01
-record.points = [[1.0, 1.0]]
-"""
-    path = tmp_path / "scene.toml"
-    path.write_text(text)
-    return load(path)[0]
+@pytest.fixture
+def scene(rock_with):
+    """A function of a wave: rock of 2000 kg/m3 with lambda = mu = 20 GPa, 4 m by 3 m, quiet."""
+
+    def make(wave):
+        return rock_with(
+            domain={"size": [4.0, 3.0]},
+            rock={"density": 2000.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
+            waves=[wave],
+            boundaries=dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+        )
+
+    return make
 
 
-P_UP = '{ kind = "P", direction = [0, 1], shape = "step", amplitude = 1e6 }'
-S_UP = '{ kind = "S", direction = [0, 1], shape = "step", amplitude = 1e6 }'
-
-
-def test_p_wave_compresses_and_moves_along_its_travel(tmp_path):
+def test_p_wave_compresses_and_moves_along_its_travel(scene):
     # E = 50 GPa, nu = 0.25: lambda = mu = 20 GPa, a = sqrt(6e10 / 2000), sigma_xx = sigma_yy / 3.
-    field = free_field(scene_with(tmp_path, P_UP))
+    field = free_field(scene(WAVE))
     a = np.sqrt(3e7)
     v, s = field(np.array([[2.0, 1.5]]), np.array([0.9, 1.1]) * 1.5 / a)
     assert v[0, :, 0].tolist() == [0.0, 0.0]
@@ -36,18 +34,18 @@ def test_p_wave_compresses_and_moves_along_its_travel(tmp_path):
     assert s[0, :, 1] == pytest.approx([-1e6 / 3, -1e6, 0.0], rel=1e-12)
 
 
-def test_s_wave_moves_to_the_left_of_its_travel(tmp_path):
+def test_s_wave_moves_to_the_left_of_its_travel(scene):
     # b = sqrt(mu / rho): velocity -x, sigma_xy = -rho b v_x n_y... = +1e6 Pa.
-    field = free_field(scene_with(tmp_path, S_UP))
+    field = free_field(scene(S_WAVE))
     v, s = field(np.array([[2.0, 0.0]]), np.array([1e-3, 2e-3]))
     assert v[0, :, 1] == pytest.approx([-1e6 / (2000 * np.sqrt(1e7)), 0.0], rel=1e-12)
     assert s[0, :, 1] == pytest.approx([0.0, 0.0, 1e6], rel=1e-12)
 
 
-def test_a_face_that_a_wave_enters_feels_twice_its_stress(tmp_path):
+def test_a_face_that_a_wave_enters_feels_twice_its_stress(scene):
     """sigma n + rho a v: both terms are the stress of the front, and cancel where it leaves."""
-    scene = scene_with(tmp_path, P_UP)
-    wave, field = plane_wave(scene, scene.waves[0]), free_field(scene)
+    own = scene(WAVE)
+    wave, field = plane_wave(own, own.waves[0]), free_field(own)
     rock, times = wave.rock, np.linspace(0, 2e-3, 50)
     Z = np.tile(np.diag([rock.s_impedance, rock.p_impedance]), (2, 1, 1))
     points, normals = np.array([[1.0, 0.0], [1.0, 3.0]]), np.array([[0.0, -1.0], [0.0, 1.0]])
@@ -57,18 +55,13 @@ def test_a_face_that_a_wave_enters_feels_twice_its_stress(tmp_path):
     assert found.at(times[10:20]) == pytest.approx(found.values[10:20], rel=1e-9)
 
 
-def test_tractions_between_samples_are_of_fourth_order(tmp_path):
-    wave = (
-        '{ kind = "S", direction = [0.6, 0.8], shape = "ricker", amplitude = 1e6, period = 1e-3 }'
-    )
-    scene = scene_with(tmp_path, wave)
-    field, exact_at = free_field(scene), np.linspace(1e-3, 2e-3, 777)
-    normals, Z = np.array([[0.0, -1.0]]), np.diag([6e6, 1e7])[None]
-    exact = tractions(field, np.array([[1.0, 0.0]]), normals, Z, exact_at).values
+def test_tractions_between_samples_are_of_fourth_order(scene):
+    wave = S_WAVE | {"direction": [0.6, 0.8], "shape": "ricker", "period": 1e-3}
+    field, exact_at = free_field(scene(wave)), np.linspace(1e-3, 2e-3, 777)
+    at, normals, Z = np.array([[1.0, 0.0]]), np.array([[0.0, -1.0]]), np.diag([6e6, 1e7])[None]
+    exact = tractions(field, at, normals, Z, exact_at).values
     errors = []
     for count in (200, 400):
-        coarse = tractions(
-            field, np.array([[1.0, 0.0]]), normals, Z, np.linspace(0, 4e-3, count + 1)
-        )
+        coarse = tractions(field, at, normals, Z, np.linspace(0, 4e-3, count + 1))
         errors.append(np.abs(coarse.at(exact_at) - exact).max())
     assert errors[0] / errors[1] == pytest.approx(16, rel=0.15)

@@ -105,18 +105,6 @@ def test_interpolation():
     assert left.tolist() == right.tolist() == [0, 0, 0] and np.isfinite(weight).all()
 
 
-@given(
-    gaps=st.lists(st.floats(0.1, 2.0), min_size=1, max_size=20),
-    where=st.lists(st.floats(0, 1), min_size=1, max_size=8),
-)
-def test_interpolation_is_that_of_numpy(gaps, where):
-    nodes = np.concatenate([[0.0], np.cumsum(gaps)])
-    values, places = np.sin(nodes), nodes[-1] * np.array(where)
-    left, right, weight = interpolation(nodes, places.tolist())
-    found = (1 - weight) * values[left] + weight * values[right]
-    assert found == pytest.approx(np.interp(places, nodes, values), abs=1e-7)
-
-
 def test_cells_of_snapshots_are_as_vtk_counts_them():
     """Around the lower face of a hexahedron, then around the upper: eight nodes in turn."""
     nodes = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)

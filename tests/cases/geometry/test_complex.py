@@ -15,7 +15,6 @@ from jointwave.cases.geometry.measure import least_angles, outline_moments, widt
 from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.geometry.pieces import without_slivers
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
-from jointwave.cases.geometry.solids import Solid, prism, taken_out
 from tests.cases.partition.polygons import closed
 
 SIZE = np.array([3.0, 2.0, 2.5])
@@ -136,33 +135,6 @@ def test_a_mirrored_domain_is_cut_into_mirrored_blocks(domain, axis):
     pair = np.argmin(np.linalg.norm(centre[:, None] - other.centroid, axis=2), axis=1)
     np.testing.assert_allclose(other.volume[pair], one.volume, atol=1e-12)
     np.testing.assert_allclose(other.centroid[pair], centre, atol=1e-7)
-
-
-def test_a_set_that_ends_at_another_splits_the_facets_beside_it_too():
-    """Brickwork in space: every brick but those at the ends touches four in the rows beside it."""
-    rows = plane_set("rows", [0, 0, 1], spacing=0.5)
-    columns = plane_set("columns", [0, 1, 0], spacing=2.0)
-    heads = plane_set("heads", [1, 0, 0], spacing=1.0, ends_at=("rows",), offset=0.5)
-    found = blocks(3, [rows, columns, heads])
-    full, half = np.isclose(found.volume, 1.0), np.isclose(found.volume, 0.5)
-    assert full.sum() == 3 * 3 + 2 * 2 and half.sum() == 2 * 2
-    beds = found.contacts.joint_set == 0
-    np.testing.assert_allclose(found.contacts.area[beds], 1.0)
-    assert beds.sum() == 4 * 6  # 3 whole bricks against 2 and two halves, across four beds
-
-
-def test_prisms_are_taken_out_of_space():
-    """A hexagonal hole: its volume is missing and its faces are a side of their own."""
-    sets = [plane_set(str(k), np.eye(3)[k], spacing=0.7) for k in range(3)]
-    body = cut_by_sets(box(np.zeros(3), SIZE), sets, TOLERANCE)
-    angles = np.arange(6) * np.pi / 3 + 0.1
-    corners = np.stack([1.2 + 0.4 * np.cos(angles), 1.5 + 0.4 * np.sin(angles)], axis=1)
-    hole: Solid = prism(corners, 1, (0.5, 1.6))  # z and x
-    found = blocks_of(taken_out(body, [(hole, 1)], TOLERANCE), TOLERANCE)
-    area = 6 * 0.4**2 * np.sin(np.pi / 3) / 2
-    assert found.volume.sum() == pytest.approx(SIZE.prod() - area * 1.1, rel=1e-12)
-    wall = found.boundary.side == 1
-    assert found.boundary.area[wall].sum() == pytest.approx(2 * area + 6 * 0.4 * 1.1, rel=1e-12)
 
 
 @given(domain=domains(dims=(2, 3)), merge=st.booleans())

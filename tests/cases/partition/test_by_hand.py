@@ -9,22 +9,6 @@ from jointwave.cases.schema.domain import Domain
 #: The first joints of a set with spacing 1, scatter 0.25 and seed 7: the same everywhere.
 PINNED = [1.1083358519779094, 2.4523330943513377, 3.691083905563523]
 SIDES = {"left": 0, "right": 1, "bottom": 2, "top": 3}
-OPENING = 5  # the first opening, after the four sides and the rest of the outline
-
-
-def test_two_orthogonal_sets_make_a_lattice(rectangle, joints):
-    """10 x 6 squares of 1 m: 5 x 10 contacts across rows, 9 x 6 across columns, moments a^4/12."""
-    sets = [joints("flat", 0.0, spacing=1.0), joints("steep", 90.0, spacing=1.0)]
-    found = cut(rectangle(10.0, 6.0), sets)
-    assert found.count == 60
-    assert np.bincount(found.contacts.joint_set).tolist() == [50, 54]
-    np.testing.assert_array_equal(found.contacts.area, 1.0)
-    np.testing.assert_array_equal(found.volume, 1.0)
-    np.testing.assert_allclose(found.second_moment, [np.eye(2) / 12] * 60, atol=1e-15)
-    centres = {tuple(c) for c in np.round(found.centroid, 12)}
-    assert centres == {(x + 0.5, y + 0.5) for x in range(10) for y in range(6)}
-    sides = np.bincount(found.boundary.side, minlength=5)
-    assert sides.tolist() == [6, 6, 10, 10, 0]
 
 
 def test_brickwork(rectangle, joints):
@@ -41,14 +25,6 @@ def test_brickwork(rectangle, joints):
     degree = np.bincount(found.contacts.blocks.ravel())
     inner = (np.abs(found.centroid[:, 0] - 5) < 3) & (np.abs(found.centroid[:, 1] - 3) < 2)
     assert (degree[inner] == 6).all()
-
-
-def test_cross_joints_without_offset_go_through(rectangle, joints):
-    rows, keys = joints("rows", 0.0, spacing=1.0), {"spacing": 2.0}
-    ends = cut(rectangle(10.0, 6.0), [rows, joints("cross", 90.0, ends_at=["rows"], **keys)])
-    through = cut(rectangle(10.0, 6.0), [rows, joints("cross", 90.0, **keys)])
-    np.testing.assert_array_equal(ends.outlines.corners, through.outlines.corners)
-    np.testing.assert_array_equal(ends.contacts.blocks, through.contacts.blocks)
 
 
 def test_offset_runs_on_from_joint_to_joint(rectangle, joints):
@@ -84,28 +60,6 @@ def test_three_sets_through_common_points(rectangle, joints):
     assert whole.sum() == 8 * 19 and found.count == whole.sum() + 8 * 2
 
 
-def test_a_tunnel_is_cut_out_and_its_blocks_are_cut_along_its_faces(rectangle, joints):
-    """A square tunnel in one block of rock: four convex parts, and no area but that lost."""
-    tunnel = [[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]]
-    domain = rectangle(10.0, 10.0, openings=[tunnel], non_convex="cut")
-    found = cut(domain, [joints("far", 90.0, through=[9.0, 5.0])])
-    assert found.volume.sum() == pytest.approx(96.0, rel=1e-14)
-    assert found.count == 5 and (found.contacts.joint_set == -1).sum() == 4
-    faces = found.boundary.side == OPENING
-    assert found.boundary.area[faces].sum() == pytest.approx(8.0, rel=1e-14)
-    assert np.abs(found.boundary.normal[faces].sum(axis=0)).max() < 1e-14
-
-
-def test_a_tunnel_between_joints_needs_no_cut(rectangle, joints):
-    """Its faces lie on joints: blocks are taken out whole, and none is refused."""
-    tunnel = [[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]]
-    sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=1.0)]
-    found = cut(rectangle(10.0, 10.0, openings=[tunnel]), sets)
-    assert found.count == 96 and (found.contacts.joint_set >= 0).all()
-    faces = found.boundary.side == OPENING
-    assert faces.sum() == 8 and set(found.boundary.joint_set[faces]) == {0, 1}
-
-
 def test_joints_along_the_boundary_are_known(rectangle, joints):
     """Rows of 1 m meet the bottom and the top of 6 m; columns of 4 m only the left of 10 m."""
     sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=4.0)]
@@ -114,24 +68,46 @@ def test_joints_along_the_boundary_are_known(rectangle, joints):
     assert known == {"left": {1}, "right": {-1}, "bottom": {0}, "top": {0}}
 
 
-def test_a_slope_is_an_outline_that_is_not_convex(joints):
-    """Area by hand: 20 x 4, and a trapezium of 12 and 6 m at 6 m height."""
-    corners = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [14.0, 10.0], [8.0, 4.0], [0.0, 4.0]]
-    sets = [joints("a", 35.0, spacing=1.0), joints("b", -50.0, spacing=1.0)]
-    found = cut(Domain(outline=corners, non_convex="cut"), sets)
-    assert found.volume.sum() == pytest.approx(80 + 9 * 6, rel=1e-13)
-    length = np.bincount(found.boundary.side, weights=found.boundary.area)
-    np.testing.assert_allclose(length, [4, 10, 20, 6, 8 + 6 * 2**0.5], rtol=1e-13)
+SQUARES = {"rows": {"dip": 0.0, "spacing": 1.0}, "columns": {"dip": 90.0, "spacing": 1.0}}
+TUNNEL = [[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]]
+BENCH = [[6.0, 3.0], [10.0, 3.0], [10.0, 6.0], [6.0, 6.0]]
+SLOPE = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [14.0, 10.0], [8.0, 4.0], [0.0, 4.0]]
+#: The domain, its joint sets, the number of blocks, and lengths of left, right, bottom, top, the
+#: rest of the outline and openings.
+SIDED = {
+    "one block around a tunnel is cut along its faces": (
+        {"size": [10.0, 10.0], "openings": [TUNNEL], "non_convex": "cut"},
+        {"far": {"dip": 90.0, "through": [9.0, 5.0]}},
+        5,
+        [10, 10, 10, 10, 0, 8],
+    ),
+    "a tunnel between joints needs no cut": (
+        {"size": [10.0, 10.0], "openings": [TUNNEL]},
+        SQUARES,
+        96,
+        [10, 10, 10, 10, 0, 8],
+    ),
+    "an opening may open the boundary": (
+        {"size": [10.0, 6.0], "openings": [BENCH]},
+        SQUARES,
+        60 - 12,
+        [6, 3, 10, 6, 0, 7],
+    ),
+    "a slope is an outline that is not convex": (
+        {"outline": SLOPE, "non_convex": "cut"},
+        {"a": {"dip": 35.0, "spacing": 1.0}, "b": {"dip": -50.0, "spacing": 1.0}},
+        None,
+        [4, 10, 20, 6, 8 + 6 * 2**0.5],
+    ),
+}
 
 
-def test_an_opening_may_open_the_boundary(rectangle, joints):
-    """A bench at the upper right corner: its two faces, and the rest of right and top."""
-    bench = [[6.0, 3.0], [10.0, 3.0], [10.0, 6.0], [6.0, 6.0]]
-    sets = [joints("rows", 0.0, spacing=1.0), joints("columns", 90.0, spacing=1.0)]
-    found = cut(rectangle(10.0, 6.0, openings=[bench]), sets)
-    assert found.count == 60 - 12
+@pytest.mark.parametrize(("domain", "sets", "count", "lengths"), SIDED.values(), ids=SIDED)
+def test_outlines_and_openings_by_their_sides(joints, domain, sets, count, lengths):
+    found = cut(Domain(**domain), [joints(name, **keys) for name, keys in sets.items()])
+    assert count in (None, found.count)
     length = np.bincount(found.boundary.side, weights=found.boundary.area)
-    np.testing.assert_allclose(length, [6, 3, 10, 6, 0, 7], rtol=1e-14)
+    np.testing.assert_allclose(length, lengths, rtol=1e-13)
 
 
 @pytest.mark.parametrize("x, y", [(40.0, 10.0), (10.0, 40.0)])
