@@ -1,10 +1,9 @@
-"""The shipped examples run as they stand, in a kernel and as plain Python, and keep their word."""
+"""The shipped examples run as they stand, in a kernel too, keep their word and become pages."""
 
 import ast
-import os
+import base64
+import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -14,10 +13,17 @@ import pytest
 from matplotlib.figure import Figure
 from scipy.stats import binom
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
 NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 CELL = re.compile(r"^# %%( \[markdown\])?\n", re.MULTILINE)
 MEASUREMENTS = 100
+
+
+@pytest.fixture
+def notebooks(modules_of):
+    """Return the module that makes the pages of the examples."""
+    return modules_of(ROOT / "tools" / "docs")("notebooks")
 
 
 def code_of(name):
@@ -56,31 +62,77 @@ def test_an_example_runs_asserts_and_draws(name, no_windows, monkeypatch):
     assert len(figures) > drawn  # it ends in a picture
 
 
-def test_an_example_runs_in_a_kernel_and_shows_what_it_makes(tmp_path):
+def test_an_example_is_run_in_a_kernel_and_its_page_shows_what_came_out(notebooks, tmp_path):
     """As in Jupyter: a dataset is shown as a table, figures as pictures, nothing goes wrong."""
-    jupytext = pytest.importorskip("jupytext")
-    nbclient = pytest.importorskip("nbclient")
+    pytest.importorskip("nbclient")
+    pytest.importorskip("jupytext")
     pytest.importorskip("ipykernel")
-    notebook = jupytext.read(EXAMPLES / "first-scene.py")
-    kinds = [cell.cell_type for cell in notebook.cells]
-    assert kinds[0] == "markdown" and kinds.count("code") == len(code_of("first-scene"))
-    client = nbclient.NotebookClient(notebook, kernel_name="python3", timeout=600)
-    client.execute(cwd=str(tmp_path))
-    shown = [o for c in notebook.cells if c.cell_type == "code" for o in c.outputs]
-    assert not [o for o in shown if o.output_type == "error" or o.get("name") == "stderr"]
-    data = [o.data for o in shown if "data" in o]
-    assert sum("image/png" in d for d in data) == 2
-    (table,) = [d["text/html"] for d in data if "text/html" in d]
-    assert "stress, compression positive" in table
+    found = json.loads(notebooks.run("first-scene", tmp_path).read_text())
+    code = [cell for cell in found["cells"] if cell["cell_type"] == "code"]
+    assert found["cells"][0]["cell_type"] == "markdown"
+    assert len(code) == len(code_of("first-scene"))
+    shown = [output for cell in code for output in cell["outputs"]]
+    assert not [o for o in shown if o["output_type"] == "error" or o.get("name") == "stderr"]
+    (table,) = [o["data"]["text/html"] for o in shown if "text/html" in o.get("data", {})]
+    assert "stress, compression positive" in "".join(table)
+    page = notebooks.page("first-scene", tmp_path)
+    assert page.count("data:image/png;base64,") == 2 and notebooks.NOT_RUN not in page
 
 
-def test_plain_python_runs_an_example_too(tmp_path):
-    """Without Jupyter, from any folder."""
-    command = [sys.executable, EXAMPLES / "own-scene.py"]
-    environment = os.environ | {"MPLBACKEND": "agg"}
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment)
-    assert done.returncode == 0 and done.stderr == "", done.stderr
-    assert "reflected 5" in done.stdout and not list(tmp_path.iterdir())
+@pytest.fixture
+def short(notebooks, tmp_path, monkeypatch):
+    """An example of two cells of code, and what a notebook of it holds once it has run."""
+    text = (
+        "# ---\n# jupyter: {}\n# ---\n\n# %% [markdown]\n# # Title\n#\n# What $x$ is.\n\n"
+        "# %%\nx = 1\nprint(x)\n\n# %% [markdown]\n# ## More\n\n# %%\nshow(x)\n"
+    )
+    (tmp_path / "short.py").write_text(text)
+    monkeypatch.setattr(notebooks, "EXAMPLES", tmp_path)
+    printed = {"output_type": "stream", "name": "stdout", "text": "1\n"}
+    again = printed | {"text": "2\n" + "3\n" * notebooks.LONGEST}
+    picture = base64.b64encode(b"a picture").decode()
+    drawn = {"output_type": "display_data", "data": {"image/png": picture, "text/plain": "<F>"}}
+    cells = [
+        {"cell_type": "markdown", "source": "# Title"},
+        {"cell_type": "code", "source": "x = 1\nprint(x)", "outputs": [printed, again]},
+        {"cell_type": "code", "source": "show(x)", "outputs": [drawn]},
+    ]
+    (tmp_path / "short.ipynb").write_text(json.dumps({"cells": cells}))
+    return tmp_path
+
+
+def test_a_page_is_its_text_its_code_and_what_came_out(notebooks, short):
+    """Long outputs end in dots; those of another version are not shown."""
+    page = notebooks.page("short", short)
+    parts = ["# Title", "What $x$ is.", "`examples/short.py`", "```python\nx = 1\nprint(x)\n```"]
+    parts += ["```text\n1\n2\n3\n", "3\n...\n```", "## More", "```python\nshow(x)\n```"]
+    places = [page.index(part) for part in [*parts, "data:image/png;base64,YSBw"]]
+    assert places == sorted(places) and page.startswith("# Title") and "<F>" not in page
+    assert "jupyter" not in page and notebooks.NOT_RUN not in page
+    assert page.count("3\n") == notebooks.LONGEST - 2
+    text = (short / "short.py").read_text()
+    (short / "short.py").write_text(text.replace("x = 1", "x = 3"))
+    page = notebooks.page("short", short)
+    assert "x = 3" in page and notebooks.NOT_RUN in page and "```text" not in page
+
+
+def test_an_example_that_fails_is_not_kept(notebooks, short):
+    pytest.importorskip("jupytext")
+    pytest.importorskip("ipykernel")
+    exceptions = pytest.importorskip("nbclient.exceptions")
+    with pytest.raises(exceptions.CellExecutionError, match="show"):
+        notebooks.run("short", short / "kept")
+    assert not list((short / "kept").glob("*.ipynb"))
+
+
+def test_every_example_has_its_page_and_every_page_its_example(notebooks):
+    """And each begins with one heading."""
+    pages = {p.stem: p.read_text() for p in (ROOT / "docs" / "examples").glob("*.md")}
+    assert sorted(pages) == NAMES
+    for name, text in pages.items():
+        assert text == f"<!-- generated: example {name} -->\n"
+        made = notebooks.page(name, ROOT / "nowhere")
+        assert made.startswith("# ") and "\n## " in made and "```python" in made
 
 
 @pytest.fixture(scope="module")
@@ -103,15 +155,12 @@ def test_intervals_hold_the_true_stiffness_as_often_as_they_say(calibration):
     """Of 100 measurements 85 to 100, from the binomial distribution; intervals of half the reach
     would hold it in 67, and the same bound refuses them. Fits start at the truth, near which each
     ends."""
-    truth = np.log10(calibration["STIFFNESS"])
-    start = truth, calibration["STRENGTH"]
+    truth = np.log10(calibration["STIFFNESS"]), calibration["STRENGTH"]
     measured = map(calibration["measure"], range(MEASUREMENTS))
-    fits = [calibration["fit"](one, start=start) for one in measured]
-    off = np.array([abs(one.best[0] - truth) / one.reach[0] for one in fits])
-    assert acceptable((off <= 1).sum())
-    assert not acceptable((off <= 0.5).sum())
-    strengths = np.array([abs(one.best[1] - calibration["STRENGTH"]) for one in fits])
-    assert acceptable((strengths <= [one.reach[1] for one in fits]).sum())
+    fits = [calibration["fit"](one, start=truth) for one in measured]
+    off = np.array([np.abs(np.array(one.best) - truth) / one.reach for one in fits])
+    assert acceptable((off[:, 0] <= 1).sum()) and acceptable((off[:, 1] <= 1).sum())
+    assert not acceptable((off[:, 0] <= 0.5).sum())
 
 
 def test_the_reach_follows_the_confidence_and_the_noise(calibration):
