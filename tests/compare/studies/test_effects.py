@@ -1,4 +1,4 @@
-"""Cost and influence of effects: measured, saved when done, and shown whole."""
+"""Effects of a scene: leaving one out leaves exactly that one out; its cost and its influence."""
 
 import json
 from itertools import chain
@@ -10,11 +10,125 @@ import pytest
 
 from jointwave import dem
 from jointwave.cases.effects import active_effects
+from jointwave.cases.effects import effects as effects_of
+from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load_tables
+from jointwave.cases.schema.law_parts import PARTS
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
-from jointwave.compare.studies.effects import COLUMNS, Effects, experiment, left_out
+from jointwave.compare.studies.effects import COLUMNS, WITHOUT, Effects, experiment, left_out
 from jointwave.compare.studies.effects_summary import draw, sentences, summarise, table
 from jointwave.compare.studies.step_cost import StepCost
+
+LAYER = [{"y": 20.0, "spacing_stiffness": 4e8, "damping_ratio": 0.05, "tension": False}]
+ACROSS = {"load__direction": [0.6, 0.8, 0.0]}
+BASE = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
+#: Keys of the joint law for its parts, of a pillar and of a rock mass alike.
+OF_LAW = {
+    "dashpots": {"damping_ratio": 0.02},
+    "no tension": {"tension": False},
+    "slip": {"friction_angle": 30.0, "cohesion": 1e4},
+    "closure": {"maximum_closure": 1e-3},
+    "weakening": {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3},
+    "dilation": {"dilation_angle": 5.0, "dilation_distance": 1e-2},
+    "rate and state": {"direct_effect": 0.01, "evolution_effect": 0.015}
+    | {"critical_slip_distance": 1e-4, "reference_rate": 1e-6},
+    "softening": {"tensile_strength": 1e5, "fracture_energy": 100.0},
+}
+SLIDING = {"slip", *(part.name for part in PARTS if part.along)}
+JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "spacing": 2.0}
+ROWS, COLUMNS_OF_BLOCKS = ({"name": f"{dip:g}", "dip": dip} | JOINT for dip in (0.0, 90.0))
+PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
+WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
+POINTS = {"points": [[6.0, 3.0]]}
+
+
+def law(name):
+    return ({"friction_angle": 30.0} if name in SLIDING else {}) | OF_LAW[name]
+
+
+def of_pillar(name):
+    across = ACROSS if name in SLIDING else {}
+    layered = {"soft_layers": LAYER} if name in ("dashpots", "no tension") else {}
+    return across | layered | {f"joints__{key}": value for key, value in law(name).items()}
+
+
+CALLS = {name: of_pillar(name) for name in OF_LAW} | {
+    "segments": {"segments": [{"y": [10.0, 20.0], "density": 2600.0}]},
+    "scatter": {"scatter": {"spacing": 0.2, "seed": 1}},
+    "joints that differ": {"soft_layers": LAYER},
+    "quiet ends": {"ends__end": "quiet"},
+    "matched ends": {"ends__start": "matched"},
+    "fixed ends": {"ends__end": "fixed"},
+    "energy ledger": {},
+    "field output": {"record__fields": 0.01},
+    "finite rotation": {**ACROSS, "motion__rotation": "finite"},
+    "mass damping": {"damping__mass_proportional": 5.0},
+    "local damping": {"damping": {"local": 0.5}},
+    "constant Q": {"rock__quality_factor": 20.0},
+    "gravity": {"gravity": {"direction": [0, 1, 0], "static": False}},
+    "prestress": {"prestress": {"normal": 1e5}},
+}
+IN_PLANE = {name: {"joint_sets": [ROWS | law(name), COLUMNS_OF_BLOCKS]} for name in OF_LAW} | {
+    "quiet sides": {"boundaries": {"bottom": "quiet"}},
+    "fixed sides": {"boundaries": {"bottom": "fixed"}},
+    "roller sides": {"boundaries": {"bottom": "roller"}},
+    "periodic sides": {"boundaries": {"left": "periodic", "right": "periodic"}},
+    "energy ledger": {"record": POINTS},
+    "field output": {"record": POINTS | {"energy": False, "fields": 1e-3}},
+    "mass damping": {"damping": {"mass_proportional": 5.0}},
+    "local damping": {"damping": {"local": 0.5}},
+    "constant Q": {"rock": {"density": 2600.0, "intact_modulus": 5e10, "quality_factor": 20.0}},
+    "gravity": {"gravity": {"static": False}},
+    "prestress": {"prestress": {"xx": 1e6, "yy": 2e6}},
+}
+
+
+def mass(**tables):
+    """Return blocks of 2 m in 12 m by 10 m, free, pressed at the top, without a ledger."""
+    ours = {
+        "title": "blocks",
+        "domain": {"size": [12.0, 10.0]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10},
+        "joint_sets": [ROWS, COLUMNS_OF_BLOCKS],
+        "loads": [PRESS],
+        "time": {"duration": 0.01},
+        "record": POINTS | {"energy": False},
+    }
+    return load_tables(ours | tables)
+
+
+@pytest.mark.parametrize(
+    "kind, effect", [*(("pillar", name) for name in CALLS), *(("mass", name) for name in IN_PLANE)]
+)
+def test_a_scene_without_an_effect_keeps_the_others(kind, effect, pillar):
+    """But dashpots and what bars tension in a layer that goes with the layers."""
+    scene = pillar(**CALLS[effect]) if kind == "pillar" else mass(**IN_PLANE[effect])
+    of_layer = {"dashpots", "no tension"} if effect == "joints that differ" else set()
+    before, after = set(active_effects(scene)), set(active_effects(left_out(scene, effect)))
+    assert (before - after, after - before) == ({effect} | of_layer, set())
+
+
+def test_every_effect_is_tried():
+    """Those of a rock mass are left out or are what acts."""
+    assert set(CALLS) == {name for name in WITHOUT if not name.endswith(" sides")}
+    acts = {"loads", "incident waves", "shaken base"}
+    assert {one.name for one in effects_of(mass())} == set(IN_PLANE) | acts
+
+
+def test_an_effect_that_the_scene_needs_stays(pillar):
+    """What it is about, a base that shakes, a side that a wave enters."""
+    shaken = pillar(ends__start="fixed", load=BASE)
+    entered = mass(boundaries={"bottom": "quiet"}, waves=[WAVE], loads=[])
+    for scene, effect, words in (
+        (pillar(**ACROSS), "spatial motion", "is the subject of the scene"),
+        (mass(), "loads", "is the subject of the scene"),
+        (shaken, "fixed ends", r"load\.quantity .*needs ends\.start"),
+        (entered, "quiet sides", r"must be 'quiet': waves\[0\] enters there"),
+    ):
+        with pytest.raises(SceneError, match=words):
+            left_out(scene, effect)
+
 
 #: ns of a block-step with (dashpots, energy ledger).
 KNOWN = {(False, False): 1.0, (False, True): 3.0, (True, False): 4.0, (True, True): 7.0}
@@ -22,35 +136,27 @@ KNOWN = {(False, False): 1.0, (False, True): 3.0, (True, False): 4.0, (True, Tru
 
 @pytest.fixture
 def known(monkeypatch):
-    """Replace timing by KNOWN; return the timed scenes."""
-    scenes = []
-
     def costs(some, name="dem"):
-        scenes.extend(some)
         kinds = [active_effects(one) for one in some]
         return [StepCost(KNOWN["dashpots" in k, "energy ledger" in k], 0.25) for k in kinds]
 
     monkeypatch.setattr(effects, "step_costs", costs)
     monkeypatch.setattr(effects, "cost_of_every_effect", lambda scene: StepCost(40.0, 0.0))
-    return scenes
-
-
-@pytest.fixture
-def damped(pillar):
-    return "a/b", pillar(joints__damping_ratio=0.05, time__duration=0.03)
 
 
 def run(variant, folder, progress=None):
-    """Return the table of the effects of a variant."""
     rows = experiment("", [variant], folder).rows(None, progress)
     return pd.DataFrame(chain(*rows), columns=COLUMNS)
 
 
-def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
+def test_effects_are_measured_by_leaving_them_out_and_once(pillar, known, tmp_path, monkeypatch):
     """The ledger changes nothing; dashpots do, and shorten the step. Costs are differences."""
-    found = run(damped, tmp_path).set_index(["engine", "effect"])
-    assert set(found.loc["dem"].index) == {"dashpots", "energy ledger"}
-    ledger, dashpots = found.loc["dem", "energy ledger"], found.loc["dem", "dashpots"]
+    fractions: list[float] = []
+    damped = "a/b", pillar(joints__damping_ratio=0.05, time__duration=0.03)
+    found = run(damped, tmp_path, fractions.append)
+    by_name = found.set_index(["engine", "effect"])
+    assert set(by_name.loc["dem"].index) == {"dashpots", "energy ledger"} and fractions[-1] == 1
+    ledger, dashpots = by_name.loc["dem", "energy ledger"], by_name.loc["dem", "dashpots"]
     assert (ledger.misfit, ledger.steps) == (0, 1)
     plain = dem.simulate(left_out(damped[1], "dashpots"))["stress"].values
     expected = relative_l2(plain, dem.simulate(damped[1])["stress"].values)
@@ -59,25 +165,16 @@ def test_effects_are_measured_by_leaving_them_out(damped, known, tmp_path):
     assert (dashpots.ns, dashpots.share) == (4.0, 4 / 7)
     assert (ledger.ns, ledger.share, ledger.noise, ledger.own) == (3.0, 3 / 7, 0.5, 7.0)
     assert ledger.everything == 40.0
-    rock = found.loc["continuum-jointed", "dashpots"]
+    rock = by_name.loc["continuum-jointed", "dashpots"]
     assert rock.ns == 4.0 and 0.01 < rock.misfit < 1 and np.isnan(rock.everything)
-
-
-def test_what_is_done_is_not_done_again(damped, known, tmp_path, monkeypatch):
-    """NaN is read as such."""
-    fractions: list[float] = []
-    first = run(damped, tmp_path, fractions.append)
     for name in ("measure", "timed"):
         monkeypatch.setattr(effects, name, lambda *some: pytest.fail("measured again"))
-    again = run(damped, tmp_path)
-    pd.testing.assert_frame_equal(first, again)
-    assert fractions[-1] == 1
+    pd.testing.assert_frame_equal(found, run(damped, tmp_path))
 
 
 def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
     """The wall that the load shakes; only rigid blocks have local damping."""
-    load = {"shape": "sine", "amplitude": 0.1, "period": 0.01, "quantity": "velocity"}
-    scene = pillar(ends__start="fixed", load=load, damping={"local": 0.1}, time__duration=0.01)
+    scene = pillar(ends__start="fixed", load=BASE, damping={"local": 0.1}, time__duration=0.01)
     point = ("a/b", scene), effects.BLOCKS
     rows = {one["effect"]: one for one in effects.timed(point, effects.measure(point))}
     fixed, local = rows["fixed ends"], rows["local damping"]
@@ -88,7 +185,6 @@ def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
 
 
 def row(effect, misfit, ns, share, steps=1.0, of=("set/one", "One", "", "dem"), **more):
-    """Return a row of a scene whose step takes 4 ns, timed to 0.2 ns."""
     about = {"reason": "", "own": 4.0, "everything": 40.0, "ns": ns, "noise": 0.2, "share": share}
     about |= dict(zip(COLUMNS, (*of, effect), strict=False))
     return about | {"misfit": misfit, "steps": steps} | more
@@ -108,14 +204,8 @@ FOUND = pd.DataFrame(
 )
 
 
-def test_sentences_have_the_numbers_of_the_extremes():
-    sets, nothing = sentences(FOUND)
-    assert "10.0 % (set/one) to 20.0 % (set/two, hard)" in sets
-    assert "the energy ledger: 75.0 % of a step of set/one" in nothing
-
-
 def test_the_table_has_the_most_expensive_first_and_says_why_an_effect_stays():
-    """A cost below the noise of its timing is said to be within it."""
+    """A cost below the noise of its timing is said to be within it; sentences name the extremes."""
     found = table(FOUND)
     assert "10.0 % of 40 ns" in found.index[0][0]
     effects = ["energy ledger", "joints that differ", "dashpots", "spatial motion", "dashpots"]
@@ -126,10 +216,12 @@ def test_the_table_has_the_most_expensive_first_and_says_why_an_effect_stays():
     assert found.index[4][0] == (
         "2. Two (set/two, hard): 4 ns per degree of freedom and step of jointed rock"
     )
+    sets, nothing = sentences(FOUND)
+    assert "10.0 % (set/one) to 20.0 % (set/two, hard)" in sets
+    assert "the energy ledger: 75.0 % of a step of set/one" in nothing
 
 
 def test_the_diagram_has_a_point_for_every_effect_that_can_be_left_out():
-    """Effects without cost or influence are points at an edge."""
     ax = draw(FOUND).axes[0]
     points = {line.get_label(): line.get_xydata()[0] for line in ax.lines if line.get_gid()}
     assert set(points) == {"energy ledger", "joints that differ", "dashpots"}
@@ -139,15 +231,11 @@ def test_the_diagram_has_a_point_for_every_effect_that_can_be_left_out():
     assert sorted(text.get_text() for text in ax.texts) == ["1", "1", "2"]
 
 
-def test_files_hold_every_number(tmp_path):
-    found = summarise(tmp_path, FOUND)
+def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monkeypatch):
+    summarise(tmp_path, FOUND)
     frame = pd.read_csv(tmp_path / "effects.csv", keep_default_na=False)
     assert frame["effect"].tolist() == FOUND.effect.tolist()
     assert frame["everything"].tolist() == ["40", "40", "20", "20", ""]
-    assert all(file.is_file() for file in found.files)
-
-
-def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monkeypatch):
     rows = [row("energy ledger", 0, 3, 0.75)]
     monkeypatch.setattr(Effects, "rows", lambda *of: [rows])
     scene = ["effects", "guo-li-2002/fig-09", "--variant", "no tension"]

@@ -10,43 +10,26 @@ from jointwave.compare.studies.work_precision import experiment
 
 
 def row(**numbers):
-    """Return a row that was done, with these numbers."""
     about = {"curve": "a", "method": "dem", "settings": {}, "state": "done", "message": ""}
     return about | numbers
 
 
-def test_leapfrog_is_of_second_order(study, tmp_path):
-    (order,) = orders(study(), judged(experiment(study(), tmp_path).rows()))
-    assert order.measured == pytest.approx(2, abs=0.05) and order.theory == 2
+def test_order_is_that_of_the_errors_that_are_known(study):
+    """Errors h^2 or h^3 of a size, or of a key that grows as they fall, a failed point between
+    them; those below ten times the floor and round-off are left out."""
 
+    def order(key, values, size, power, order, failed=None, **about):
+        curve = {"label": "a", "method": "dem", "order": order, "vary": {key: values}}
+        rows = [row(settings={key: v}, numerical=1e-3 * size(v) ** power, **about) for v in values]
+        rows += [] if failed is None else [row(state="failed", settings={key: failed})]
+        return [one.measured for one in orders(study([curve]), judged(rows))]
 
-def test_order_is_that_of_the_errors(study):
-    """Errors h^3 of a key that grows as they fall, a failed point between them."""
-    key = "numerics.continuum.elements_per_block"
-    curve = {
-        "label": "a",
-        "method": "dem",
-        "own": "lattice",
-        "order": 3,
-        "vary": {key: [1, 2, 3, 4]},
-    }
-    rows = [row(settings={key: n}, numerical=1e-3 / n**3) for n in (1, 2, 4)]
-    rows.append(row(state="failed", settings={key: 3}))
-    (order,) = orders(study([curve]), judged(rows))
-    assert order.measured == pytest.approx(3)
-
-
-def test_no_order_where_none_is_claimed_or_errors_are_not_known(study):
-    """Errors h^2 down to half a percent of the floor's tenfold: those below are left out."""
-    sizes = (4, 2, 1, 0.5)
-    curve = {"label": "a", "method": "dem", "vary": {"pillar.block": list(sizes)}}
-    about = [{"settings": {"pillar.block": d}, "numerical": 1e-3 * d**2} for d in sizes]
-    rows = [row(**one, numerical_floor=5e-5) for one in about]
-    assert orders(study([curve]), judged(rows)) == []
-    (order,) = orders(study([curve | {"order": 2}]), judged(rows))
-    assert order.measured == pytest.approx(2)
-    still = [one | {"numerical": 1e-15} for one in rows]
-    assert orders(study([curve | {"order": 2}]), judged(still)) == []
+    count, inverse = "numerics.continuum.elements_per_block", lambda n: 1 / n
+    assert order(count, [1, 2, 4], inverse, 3, order=3, failed=3) == pytest.approx([3])
+    sizes = "pillar.block", [4, 2, 1, 0.5], float, 2
+    assert order(*sizes, order=2, numerical_floor=5e-5) == pytest.approx([2])
+    assert order(*sizes, order=None, numerical_floor=5e-5) == []
+    assert order("pillar.block", [4, 2], lambda d: 1e-6 * d, 2, order=2) == []
 
 
 errors = st.floats(1e-6, 1.0)
@@ -100,14 +83,13 @@ def test_the_floor_of_totals_is_that_of_the_finest_physics():
 
 def test_sentences_hold_for_their_numbers(study):
     """The next best within the same misfit, not the most expensive."""
-    timed = study(timed=True, finest="lattice")
     numbers = zip((0.05, 0.02, 0.005, 0.004, 0.003), (1, 2, 4, 12.0, 900.0), "ababc", strict=True)
     parts = {"modelling": 0.001, "total_floor": 0.0}
     rows = [
         row(curve=name, total=e, numerical=e - 0.001, seconds=cost, work=1 / e, **parts)
         for e, cost, name in numbers
     ]
-    one, two = sentences(timed, judged(rows))
+    one, two = sentences(study(timed=True, finest="lattice"), judged(rows))
     assert one.startswith("Within 10.0 %") and "b (numerical 1.90 %" in one
     assert "a (numerical 4.90 % + modelling 0.100 % = 5.00 %; 1 s)" in one
     assert one.endswith("steps 2 times as long.")

@@ -1,27 +1,46 @@
-"""Sweeps as a user meets them: a folder for each point, one table, failures that stop nobody."""
+"""Sweeps and ensembles: a folder a point, one table, statistics, failures that stop nobody."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
 
 from jointwave import cases
+from jointwave.cases.errors import SceneError
 from jointwave.compare.scenes import find
-from jointwave.compare.studies.sweep_table import summarise
+from jointwave.compare.studies.sweep_keys import axes, cases_of
+from jointwave.compare.studies.sweep_table import PERCENTILES, STATISTICS, summarise
 from jointwave.dem import simulate
 
-SCENE = "guo-li-2002/fig-03"
-SHORT = ("--set", "time.duration=0.02", "--set", "record.velocity=[20.25]")
+SCENE, RANDOM = "guo-li-2002/fig-03", "beyond/random-joints"
 RATIO = "joints.damping_ratio"
-KEYS = ("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
-SWEPT = ("run", SCENE, "--variant", "", *SHORT, *KEYS)
-ALONE = ("--workers", 1)
-#: A comparison solves by everything that applies: it gets a short pillar.
-PAIRS = ("--variant", "", "--no-spectral", *ALONE, "--set", "pillar.length=10.0")
-PAIRS += ("--set", "time.duration=0.02", "--set", "record.stress=[4.0]")
-PAIRS += ("--set", "record.velocity=[]")
+SHORT = {"time.duration": 0.02, "record.velocity": [20.25]}
+BRIEF = {"time.duration": 0.02, "record.stress": [10.0, 20.0]}
+ALONE, MEMBERS = ("--workers", 1), 5
+
+
+def keys(changes):
+    return [part for k, v in changes.items() for part in ("--set", f"{k}={v}")]
+
+
+def run(*more):
+    return ("run", SCENE, "--variant", "", *keys(SHORT), *more)
+
+
+def compare(*more, stress=4.0, scene=SCENE):
+    """Return a comparison of all that applies to ten metres."""
+    short = {"pillar.length": 10.0, "time.duration": 0.02, "record.stress": [stress]}
+    options = ("--variant", "", "--no-spectral", *ALONE, *keys(short | {"record.velocity": []}))
+    return ("compare", scene, *options, *more)
+
+
+SWEPT = run("--sweep", f"{RATIO}=-1,0.02,0.1", "--sweep", "ends.end=free,quiet")
+ENSEMBLE = ("run", RANDOM, "--variant", "", *keys(BRIEF), "--ensemble")
 
 
 @pytest.fixture(scope="module")
@@ -38,42 +57,38 @@ def swept(folder, command):
     return folder / "out", said.read_text()
 
 
+@pytest.fixture
+def ensemble(folder, command):
+    out = folder / "members"
+    if not out.is_dir():
+        command(*ENSEMBLE, MEMBERS, "--workers", 2, "--out", out)
+    return out
+
+
 def test_every_point_is_the_run_of_its_scene(swept):
-    """The same numbers as of the scene with these keys set, in a folder that says them."""
-    out, _ = swept
-    for ratio in (0.02, 0.1):
-        for end in ("free", "quiet"):
-            changes = {RATIO: ratio, "ends.end": end, "time.duration": 0.02}
-            scene = cases.load_variant(find(SCENE), "", changes | {"record.velocity": [20.25]})
-            result = xr.load_dataset(out / f"{RATIO}={ratio},ends.end={end}" / "dem.nc")
-            np.testing.assert_array_equal(result.stress, simulate(scene).stress)
-
-
-def test_the_table_is_tidy(swept):
-    """One row a receiver with its peak."""
-    out, _ = swept
-    rows = pd.read_csv(out / "sweep.csv")
-    done = rows[rows.state == "done"]
-    assert len(done) == 2 * 2 * 2 and set(done.quantity) == {"stress", "velocity"}
-    result = xr.load_dataset(out / f"{RATIO}=0.1,ends.end=free" / "dem.nc")
-    wave = result.stress.sel(stress_y=20.0)
-    row = done[(done[RATIO] == 0.1) & (done["ends.end"] == "free") & (done.y == 20.0)].iloc[0]
-    assert abs(row.peak) == pytest.approx(float(np.abs(wave).max()), rel=1e-8)
-    assert float(wave.sel(time=row.time_of_peak, method="nearest")) == pytest.approx(row.peak)
-    assert (row.engine, row.quantity, row.steps) == ("dem", "stress", result.attrs["steps"])
-
-
-def test_a_point_that_fails_is_listed_and_stops_nobody(swept):
     out, said = swept
     rows = pd.read_csv(out / "sweep.csv")
-    failed = rows[rows.state == "failed"]
+    done, failed = (rows[rows.state == state] for state in ("done", "failed"))
+    assert len(done) == 2 * 2 * 2 and set(done.quantity) == {"stress", "velocity"}
+    for ratio in (0.02, 0.1):
+        for end in ("free", "quiet"):
+            changes = SHORT | {RATIO: ratio, "ends.end": end}
+            expected = simulate(cases.load_variant(find(SCENE), "", changes))
+            result = xr.load_dataset(out / f"{RATIO}={ratio},ends.end={end}" / "dem.nc")
+            np.testing.assert_array_equal(result.stress, expected.stress)
+            wave = expected.stress.sel(stress_y=20.0)
+            row = done[(done[RATIO] == ratio) & (done["ends.end"] == end) & (done.y == 20.0)]
+            (row,) = row.itertuples()
+            assert abs(row.peak) == pytest.approx(float(np.abs(wave).max()), rel=1e-8)
+            at = float(wave.sel(time=row.time_of_peak, method="nearest"))
+            assert at == pytest.approx(row.peak)
+            assert (row.engine, row.steps) == ("dem", expected.attrs["steps"])
     assert len(failed) == 2 and failed.message.str.contains("must be at least 0").all()
     assert said.count(f"failed: {RATIO}=-1") == 2
     assert (failed[RATIO] == -1).all() and failed.peak.isna().all()
 
 
 def test_what_is_done_is_not_run_again(swept, command):
-    """Nor is it when its result was removed: then it is made anew."""
     out, _ = swept
     file = out / f"{RATIO}=0.02,ends.end=free" / "dem.nc"
     other = out / f"{RATIO}=0.1,ends.end=free" / "dem.nc"
@@ -84,25 +99,34 @@ def test_what_is_done_is_not_run_again(swept, command):
     assert xr.load_dataset(file).equals(before) and other.stat().st_mtime_ns == kept
 
 
-def test_a_comparison_is_swept(command, tmp_path):
-    """Misfits of every pair over the key, and the figure of each point."""
-    done = command("compare", SCENE, "--sweep", "ends.start=free,quiet", *PAIRS, "--out", "out")
-    assert "rigid blocks ~ rigid blocks, exact" in done.out and "stress at y = 4 m" in done.out
+def test_a_comparison_is_swept_beside_curves_of_others(command, tmp_path):
+    """Misfits of every pair over the key, and the figure of each point; a file of others that has
+    changed since is compared anew."""
+    sweep = ("--sweep", "ends.start=free,quiet", "--with", "curve.csv", "--out", "out")
+    found = []
+    for peak in (0.1, 0.2, 0.2):
+        text = f"time [ms], stress@4 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
+        (tmp_path / "curve.csv").write_text(text)
+        rows = json.loads(command(*compare(*sweep, "--json")).out)["rows"]
+        found.append([row["misfit"] for row in rows if row["one"] == "curve.csv"])
+    assert found[0] and found[0] != found[1] == found[2]
+    assert len(list((tmp_path / "out" / "points").iterdir())) == 2 * 2
+    said = command(*compare(*sweep)).out
+    assert "rigid blocks ~ rigid blocks, exact" in said and "stress at y = 4 m" in said
     rows = pd.read_csv(tmp_path / "out" / "sweep.csv")
-    found = rows[(rows.pair == "dem ~ lattice") & (rows.quantity == "stress") & (rows.y == 4.0)]
-    assert set(found["ends.start"]) == {"free", "quiet"}
-    assert found.misfit.between(1e-9, 5e-3).all() and found.misfit.nunique() == 2
+    blocks = rows[(rows.pair == "dem ~ lattice") & (rows.quantity == "stress") & (rows.y == 4.0)]
+    assert set(blocks["ends.start"]) == {"free", "quiet"}
+    assert blocks.misfit.between(1e-9, 5e-3).all() and blocks.misfit.nunique() == 2
     assert (tmp_path / "out" / "ends.start=quiet" / "comparison.svg").is_file()
 
 
 def test_the_worst_waveform_of_each_pair_is_shown():
     """Of three one is faint, and furthest off: it decides nothing. All are in the table."""
     numbers = dict.fromkeys(("peak_ratio", "delay", "period_ratio", "envelope", "phase"), 1.0)
+    about = {"key": 3, "variant": "", "pair": "dem ~ lattice", "state": "done", "message": ""}
+    about |= {"x": 1.0, "y": 2.0} | numbers
     rows = [
-        {"key": 3, "variant": "", "pair": "dem ~ lattice", "quantity": f"stress {k}"}
-        | {"x": 1.0, "y": 2.0}
-        | {"misfit": 0.01 * k, "faint": str(k == 3).lower(), "state": "done", "message": ""}
-        | numbers
+        about | {"quantity": f"stress {k}", "misfit": 0.01 * k, "faint": str(k == 3).lower()}
         for k in (1, 2, 3)
     ]
     found = summarise("scene", ["key"], None, pd.DataFrame(rows))
@@ -113,22 +137,8 @@ def test_the_worst_waveform_of_each_pair_is_shown():
     assert len(found.facts["rows"]) == 3
 
 
-def test_curves_of_others_are_swept_too(command, tmp_path):
-    """A file that has changed since is compared anew."""
-    sweep = ("--sweep", "ends.start=free", "--with", "curve.csv", "--json", "--out", "out")
-    found = []
-    for peak in (0.1, 0.2, 0.2):
-        text = f"time [ms], stress@4 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
-        (tmp_path / "curve.csv").write_text(text)
-        rows = json.loads(command("compare", SCENE, *PAIRS, *sweep).out)["rows"]
-        found.append([row["misfit"] for row in rows if row["one"] == "curve.csv"])
-    assert found[0] and found[0] != found[1] == found[2]
-    assert len(list((tmp_path / "out" / "points").iterdir())) == 2
-
-
 def test_a_comparison_without_a_folder_writes_nothing(command, tmp_path):
-    sweep = ("--sweep", "ends.start=free", "--json")
-    facts = json.loads(command("compare", SCENE, *PAIRS, *sweep).out)
+    facts = json.loads(command(*compare("--sweep", "ends.start=free", "--json")).out)
     assert facts["files"] == [] and facts["rows"] and not list(tmp_path.iterdir())
 
 
@@ -137,29 +147,149 @@ def test_a_comparison_without_a_folder_writes_nothing(command, tmp_path):
     [
         ("joints.dampng=0,1", "unknown key"),
         (f"{RATIO}=-1,-2", "must be at least 0"),
-        (f"{RATIO}=1:2", "must be KEY=FROM"),
         ("time.duration=1,2", "is given already"),
     ],
 )
 def test_a_sweep_of_nothing_is_one_line(command, tmp_path, spec, words):
-    """And nothing is written."""
-    said = command("run", SCENE, *SHORT, "--sweep", spec, code=2).err
+    said = command(*run("--sweep", spec), code=2).err
     assert said.count("\n") == 1 and words in said
     assert not list(tmp_path.iterdir())
 
 
 def test_points_that_all_fail_as_they_run_are_one_line(command):
-    """A step above the critical one is found out when the run is made."""
-    spec = ("--sweep", "numerics.dem.step_fraction=1.5,2.0")
-    said = command("run", SCENE, *SHORT, "--variant", "", *spec, *ALONE, code=2).err
+    said = command(*run("--sweep", "numerics.dem.step_fraction=1.5,2.0"), *ALONE, code=2).err
     assert said.count("\n") == 1
     assert "all 2 points fail" in said and "critical step" in said
 
 
 def test_a_value_that_makes_no_name_has_a_number(command, tmp_path):
-    """A list, of which a folder's name would be unreadable."""
-    spec = ("--sweep", "record.stress=[10.0],[20.0]")
-    command("run", SCENE, "--variant", "", *SHORT, *spec, *ALONE, "--out", tmp_path)
+    command(*run("--sweep", "record.stress=[10.0],[20.0]"), *ALONE, "--out", tmp_path)
     assert {"point-00001", "point-00002"} < {path.name for path in tmp_path.iterdir()}
     rows = pd.read_csv(tmp_path / "sweep.csv")
     assert rows["record.stress"].unique().tolist() == ["[10.0]", "[20.0]"]
+
+
+def test_members_have_the_following_seeds_and_statistics_are_theirs(ensemble):
+    seeds = [BRIEF | {"scatter.seed": 1 + k} for k in range(MEMBERS)]
+    runs = [simulate(cases.load_variant(find(RANDOM), "", changes)) for changes in seeds]
+    stress = np.stack([one.stress.values for one in runs])
+    for k, expected in enumerate(stress):
+        result = xr.load_dataset(ensemble / f"member={k + 1}" / "dem.nc")
+        np.testing.assert_array_equal(result.stress, expected)
+    found = xr.load_dataset(ensemble / "dem-ensemble.nc")
+    assert found.statistic.values.tolist() == list(STATISTICS)
+    np.testing.assert_allclose(found.stress.sel(statistic="mean"), stress.mean(axis=0), rtol=1e-12)
+    percentiles = np.percentile(stress, PERCENTILES, axis=0)
+    np.testing.assert_allclose(found.stress[1:], percentiles, rtol=1e-12)
+    assert (found.attrs["members"], found.attrs["engine"]) == (MEMBERS, "dem")
+    rows = pd.read_csv(ensemble / "ensemble.csv").set_index(["number", "quantity", "y"])
+    peaks = [wave[np.abs(wave).argmax()] for wave in stress[:, 1]]
+    row = rows.loc[("peak", "stress", 20.0)]
+    expected = [np.mean(peaks), *np.percentile(peaks, PERCENTILES), MEMBERS]
+    assert row[[*STATISTICS, "members"]].tolist() == pytest.approx(expected, rel=1e-8)
+
+
+def test_an_ensemble_resumes(ensemble, command):
+    done = {path: path.stat().st_mtime_ns for path in ensemble.glob("member=*/dem.nc")}
+    gone = ensemble / "member=2" / "dem.nc"
+    gone.unlink()
+    said = command(*ENSEMBLE, MEMBERS + 1, "--json", *ALONE, "--out", ensemble).out
+    again = {path for path, at in done.items() if path.stat().st_mtime_ns != at}
+    assert again == {gone} and (ensemble / f"member={MEMBERS + 1}" / "dem.nc").is_file()
+    facts = json.loads(said)
+    assert {row["members"] for row in facts["statistics"]} == {MEMBERS + 1}
+
+
+def test_an_ensemble_has_the_misfits_and_waveforms_of_a_comparison(command, tmp_path):
+    said = command(*compare("--ensemble", "3", "--out", tmp_path, stress=5.0, scene=RANDOM)).out
+    assert "rigid blocks ~ rigid blocks, exact" in said
+    table = pd.read_csv(tmp_path / "sweep.csv")
+    rows = pd.read_csv(tmp_path / "ensemble.csv")
+    pair = {"one": "dem", "other": "lattice", "quantity": "stress"}
+    of_pair = table[(table[list(pair)] == list(pair.values())).all(axis=1)]
+    row = rows[(rows[list(pair)] == list(pair.values())).all(axis=1) & (rows.number == "misfit")]
+    assert sorted(of_pair.member) == [1, 2, 3]
+    assert float(row["mean"].iloc[0]) == pytest.approx(of_pair.misfit.mean(), rel=1e-7)
+    exact = xr.load_dataset(tmp_path / "exact-jointed-bar-ensemble.nc").stress.sel(statistic="p50")
+    files = [tmp_path / f"member={k}" / "exact-jointed-bar.nc" for k in (1, 2, 3)]
+    every = [xr.load_dataset(file).stress for file in files]
+    np.testing.assert_allclose(exact, np.median(every, axis=0), rtol=1e-12, atol=1e-9)
+    assert "jointed bar, exact" in (tmp_path / "ensemble-waveforms.svg").read_text()
+    assert (tmp_path / "ensemble-waveforms.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_ensemble_shifts_every_seed_there_is():
+    found = cases_of("rock-mass/random-network", [], "", [], None, 2)
+    seeds = [[one.seed for one in case.scene.joint_sets] for case in found]
+    assert seeds == [[27, 671], [28, 672]]
+    with pytest.raises(SceneError, match=r"--ensemble: needs random joints: \[scatter\]"):
+        cases_of(SCENE, [], "", [], Path("out"), 3)
+
+
+def values(spec):
+    ((key, found),) = axes([f"{RATIO}={spec}"], []).items()
+    assert key == RATIO
+    return found
+
+
+@pytest.mark.parametrize(
+    "spec, expected",
+    [
+        ("0:1:5", [0.0, 0.25, 0.5, 0.75, 1.0]),
+        ("0.1:0.7:7", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]),  # no round-off in names of folders
+        ("2:-2:3", [2, 0, -2]),
+        ("1:4:4", [1, 2, 3, 4]),  # whole numbers, for keys that take no others
+        ("1:4:3", [1.0, 2.5, 4.0]),
+        ("log:1e8:1e10:3", [1e8, 1e9, 1e10]),
+        ("0,0.1,0.5", [0, 0.1, 0.5]),
+        ("0.3", [0.3]),
+        ("true,false", [True, False]),
+        ("free,quiet", ["free", "quiet"]),
+        ('"a,b","c:d"', ["a,b", "c:d"]),
+        ("[0,1,0],[1,0,0]", [[0, 1, 0], [1, 0, 0]]),
+        ("[],[{y=8.0,thickness=0.1}]", [[], [{"y": 8.0, "thickness": 0.1}]]),
+    ],
+)
+def test_values_are_what_is_written(spec, expected):
+    found = values(spec)
+    assert found == expected and list(map(type, found)) == list(map(type, expected))
+
+
+@given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), st.integers(2, 50))
+def test_the_ends_are_what_was_given_and_steps_or_factors_are_equal(first, last, count):
+    if first == last:
+        return
+    found = values(f"{first!r}:{last!r}:{count}")
+    assert len(found) == count and (found[0], found[-1]) == (first, last)
+    np.testing.assert_allclose(found, np.linspace(first, last, count), rtol=1e-11, atol=1e-9)
+    if min(abs(first), abs(last)) > 1e-6:
+        last = np.copysign(last, first)
+        if last != first:
+            found = values(f"log:{first!r}:{float(last)!r}:{count}")
+            np.testing.assert_allclose(found, np.geomspace(first, last, count), rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        *((f"a={spec}", "must be KEY=FROM:TO:COUNT") for spec in ("", "1:2", "1:2:3:4")),
+        ("nothing", "must be KEY=FROM:TO:COUNT"),
+        *((f"a={spec}", "of numbers") for spec in ("log:1:2", "a:b:3", "1:2:2.5")),
+        *((f"a={spec}", "COUNT of 2") for spec in ("1:2:1", "1:2:-3", "1:2:20000")),
+        ("a=1:1:3", "ends that differ"),
+        *((f"a={spec}", "finite ends") for spec in ("nan:1:3", "1:inf:3")),
+        *((f"a={spec}", "one sign") for spec in ("log:0:1:3", "log:-1:1:3")),
+        *((f"a={spec}", "repeat a value") for spec in ("0.1,0.1", "1,1.0,true,1")),
+        ("a=1,2 a=3,4", "a is given already"),
+        ("set=1,2", "set is given already"),
+        ("a=1:2:100 b=1:2:200", "20,000 points; at most 10,000"),
+    ],
+)
+def test_a_bad_form_is_one_line(given, words):
+    with pytest.raises(SceneError, match=words) as error:
+        axes(given.split(" "), ["set"])
+    assert str(error.value).startswith("--sweep: ") and "\n" not in str(error.value)
+
+
+def test_several_keys_have_values_of_their_own():
+    assert axes(["a=1,2", "b=x,y,z"], ["c"]) == {"a": [1, 2], "b": ["x", "y", "z"]}
