@@ -16,7 +16,7 @@ SCENE = "guo-li-2002/fig-03"
 SHORT = {"time.duration": 2e-3, "record.interval": 1e-4, "pillar.length": 10.0}
 SHORT |= {"record.stress": [0.0, 5.0, 7.3], "record.velocity": [0.25, 6.1]}
 LOSSY = {"joints.damping_ratio": 0.02, "joints.tension": False, "ends.end": "quiet"}
-ROCK = {"numerics.continuum.elements_per_block": 2}
+ROCK = LOSSY | {"numerics.continuum.elements_per_block": 2}
 
 #: Thirteen tiles of 1024 blocks, with what threads share: dashpots, slip, the ledger, receivers.
 ROW = {
@@ -34,14 +34,8 @@ THREADS = {f"{count} threads": count for count in (1, 2, 3)}
 RUNS = {
     "blocks": ("dem", LOSSY),
     "blocks, fourth order": ("dem", {"numerics.dem.scheme": "fourth-order"}),
-    "rock, explicit": (
-        "continuum-jointed",
-        LOSSY | ROCK | {"numerics.continuum.scheme": "explicit"},
-    ),
-    "rock, implicit": (
-        "continuum-jointed",
-        LOSSY | ROCK | {"numerics.continuum.scheme": "implicit"},
-    ),
+    "rock, explicit": ("continuum-jointed", ROCK | {"numerics.continuum.scheme": "explicit"}),
+    "rock, implicit": ("continuum-jointed", ROCK | {"numerics.continuum.scheme": "implicit"}),
     **{name: ("dem", ROW | {"numerics.dem.threads": n}) for name, n in THREADS.items()},
 }
 

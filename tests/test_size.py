@@ -40,39 +40,38 @@ SHORT = {"record__interval": 1e-7, "time__duration": 1e-5}
 LONG = {"record__interval": 1e-6, "time__duration": 1.0, "load__period": 0.01}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}
 
-#: What is too large for 0.1 GB, the solver, and the key that decides it.
+FRACTION, ELEMENTS = "numerics.dem.step_fraction", "numerics.continuum.elements_per_block"
+FINE = dict(numerics__continuum__elements_per_block=1000, pillar__block=0.05)
+THICK = dict(numerics__continuum__dim=3, numerics__continuum__elements_across=50)
+FIELDS = dict(record__fields=1e-5, time__duration=1e-2, record__interval=1e-5)
+FOURTH = dict(numerics__dem__scheme="fourth-order", numerics__dem__step_fraction=3e-7)
+ONCE = dict(record__interval=1.0, time__duration=9.0)
+OPENS = dict(joints__tension=False, record__interval=1e-6)
+
+#: What is too large for 0.1 GB, the solver, and the key that decides it or what of it is large.
 LARGE = {
-    "blocks": (dict(pillar__block=2e-5, **SHORT), "dem", "pillar.block"),
-    "blocks in space": (dict(pillar__block=5e-5, **SHORT, **SPACE), "dem", "pillar.block"),
+    "blocks": (SHORT | dict(pillar__block=2e-5), "dem", "pillar.block"),
+    "blocks in space": (SHORT | SPACE | dict(pillar__block=5e-5), "dem", "pillar.block"),
     "samples": (LONG, "dem", "record.interval"),
     "samples in space": (LONG | SPACE, "dem", "record.interval"),
-    "steps": (dict(numerics__dem__step_fraction=1e-7), "dem", "numerics.dem.step_fraction"),
-    "steps of fourth order": (
-        dict(numerics__dem__step_fraction=3e-7, numerics__dem__scheme="fourth-order"),
-        "dem",
-        "numerics.dem.step_fraction",
-    ),
-    "snapshots": (
-        dict(pillar__block=0.025, record__fields=1e-5, time__duration=1e-2, record__interval=1e-5),
-        "dem",
-        "record.fields",
-    ),
-    "elements": (
-        dict(numerics__continuum__elements_per_block=1000, pillar__block=0.05),
-        "continuum-jointed",
-        "numerics.continuum.elements_per_block",
-    ),
+    "steps": (dict(numerics__dem__step_fraction=1e-7), "dem", FRACTION),
+    "steps of fourth order": (FOURTH, "dem", FRACTION),
+    "snapshots": (FIELDS | dict(pillar__block=0.025), "dem", "record.fields"),
+    "elements": (FINE, "continuum-jointed", ELEMENTS),
     "elements that a short period asks for": (
         dict(load__period=1e-12, record__interval=1e-5),
         "continuum-equivalent",
-        "numerics.continuum.elements_per_block",
+        ELEMENTS,
     ),
-    "cells of a column": (
-        dict(numerics__continuum__dim=3, numerics__continuum__elements_across=50),
-        "continuum-jointed",
-        "numerics.continuum.elements_across",
-    ),
+    "cells of a column": (THICK, "continuum-jointed", "numerics.continuum.elements_across"),
     "samples of an exact solution": (LONG | {"time__duration": 3.0}, "lattice", "record.interval"),
+    "a short load": (
+        dict(load__period=1e-9, record__interval=1e-4),
+        "jointed-bar",
+        "jointed-bar: .*instants of the load",
+    ),
+    "an integral": (ONCE, "lattice", "lattice: .*points of integration"),
+    "states": (OPENS, "no-tension-chain", "no-tension-chain: .*states of"),
 }
 
 
@@ -83,28 +82,12 @@ def test_a_large_run_is_refused_with_its_estimate(pillar, limit, name):
     scene = pillar(**changes)
     limit(0.1)
     tracemalloc.start()
-    with pytest.raises(SceneError, match=rf"{key}.*would need about .* (GB|MB) of memory") as error:
+    with pytest.raises(SceneError, match=rf"{key}.*would need about .* (GB|MB)") as error:
         solve(solver, scene)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert "100 MB available" in str(error.value) and len(str(error.value).splitlines()) == 1
     assert most < AT_ONCE
-
-
-@pytest.mark.parametrize(
-    "solver, changes, words",
-    [
-        ("jointed-bar", dict(load__period=1e-9, record__interval=1e-4), "instants of the load"),
-        ("lattice", dict(record__interval=1.0, time__duration=9.0), "points of integration"),
-        ("no-tension-chain", dict(joints__tension=False, record__interval=1e-6), "states of"),
-    ],
-)
-def test_a_large_exact_solution_is_refused(pillar, limit, solver, changes, words):
-    limit(0.1)
-    with pytest.raises(
-        SceneError, match=f"not enough memory: {solver}: .*{words}.* 100 MB available"
-    ):
-        solve(solver, pillar(**changes))
 
 
 def test_a_bar_that_is_run_through_without_end_has_no_images(pillar):
@@ -115,16 +98,16 @@ def test_a_bar_that_is_run_through_without_end_has_no_images(pillar):
 
 
 @pytest.mark.parametrize(
-    "solver, changes, size",
+    "solver, changes",
     [
-        ("dem", {}, 5.0),
-        ("dem", SPACE, 5.0),
-        ("continuum-jointed", dict(numerics__continuum__elements_per_block=1), 5.0),
+        ("dem", {}),
+        ("dem", SPACE),
+        ("continuum-jointed", dict(numerics__continuum__elements_per_block=1)),
     ],
 )
-def test_a_run_within_the_memory_is_made(pillar, limit, solver, changes, size):
+def test_a_run_within_the_memory_is_made(pillar, limit, solver, changes):
     """The estimate of a short run of a hundred blocks is some MB, far below what it is given."""
-    limit(size / 1e3)
+    limit(5e-3)
     short = dict(time__duration=2e-3, record__interval=1e-4)
     assert solve(solver, pillar(**short, **changes)).sizes["time"] == 21
 
@@ -162,15 +145,8 @@ print(highest() - before)
 def test_the_estimate_is_near_what_a_run_takes(pillar, limit, tmp_path, blocks, samples, key):
     """No more, or a run that fits would be refused; no less than a third, or it bounds nothing."""
     file = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
-    command = [
-        sys.executable,
-        "-c",
-        CHILD,
-        str(file),
-        str(blocks),
-        str(samples),
-        str(tmp_path / "x.nc"),
-    ]
+    arguments = map(str, (file, blocks, samples, tmp_path / "x.nc"))
+    command = [sys.executable, "-c", CHILD, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     changes = dict(pillar__length=0.5 * blocks, record__stress=[1.0], record__velocity=[1.0])
     limit(1e-5)
@@ -182,12 +158,12 @@ def test_the_estimate_is_near_what_a_run_takes(pillar, limit, tmp_path, blocks, 
     assert float(done.stdout) / 3 <= estimate <= float(done.stdout)
 
 
-def test_a_large_file_of_curves_is_refused(tmp_path, limit):
-    """By what its header says, before its numbers are read."""
-    path = tmp_path / "run.nc"
-    time = np.arange(20_000.0)
-    held = {"stress": (("stress_y", "time"), time[None])}
-    one = xr.Dataset(held, {"time": time, "stress_y": [1.0]})
+def test_a_file_of_curves_is_read_where_it_fits(tmp_path, limit):
+    """What does not is refused by what its header says."""
+    path, time = tmp_path / "run.nc", np.arange(20_000.0)
+    one = xr.Dataset(
+        {"stress": (("stress_y", "time"), time[None])}, {"time": time, "stress_y": [1.0]}
+    )
     one.to_netcdf(path, engine="scipy")
     assert read_netcdf(path, 3).time.values.size == 20_000
     limit(1e-4)
@@ -247,41 +223,28 @@ def classic(path, count, variables, size):
     return hollow(path, header, size)
 
 
-def scene_of(path):
-    path.write_text("a=1\n" * 600_000)
-    return cases.load(path)
-
-
-def kept(path, text):
-    path.write_text(text)
-    return read_rows(path)
-
-
 def lines(path, text):
     path.write_text(text)
     return path
 
 
 #: Files that are small on the disk or to look at, and what a command does with them.
-NETCDF_NAMES = ["time", *QUANTITIES, *RECEIVERS, *COMPONENT_DIMENSIONS]
+NAMES = ["time", *QUANTITIES, *RECEIVERS, *COMPONENT_DIMENSIONS]
+BIG = 2**31 + 4096
 BOMBS = {
-    "curves as NetCDF": lambda p: read_netcdf(
-        classic(p / "a.nc", 2**28, ["time"], 2**31 + 4096), 3
-    ),
-    "curves in one place": lambda p: read_netcdf(
-        classic(p / "a.nc", 2**20, NETCDF_NAMES, 9_000_000), 3
-    ),
-    "a result": lambda p: load_netcdf(classic(p / "a.nc", 2**28, ["stress"], 2**31 + 4096)),
+    "curves as NetCDF": lambda p: read_netcdf(classic(p / "a.nc", 2**28, ["time"], BIG), 3),
+    "curves in one place": lambda p: read_netcdf(classic(p / "a.nc", 2**20, NAMES, 9_000_000), 3),
+    "a result": lambda p: load_netcdf(classic(p / "a.nc", 2**28, ["stress"], BIG)),
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
     "a load": lambda p: read_history(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name, "stress"),
     "a row": lambda p: read_rows(hollow(p / "a.json", b"{")),
-    "a row of lists": lambda p: kept(p / "a.json", "[" + "[]," * 2_000_000 + "0]"),
-    "a row of depth": lambda p: kept(p / "a.json", "[" * 500_000),
+    "a row of lists": lambda p: read_rows(lines(p / "a.json", "[" + "[]," * 2_000_000 + "0]")),
+    "a row of depth": lambda p: read_rows(lines(p / "a.json", "[" * 500_000)),
     "a table of peers": lambda p: peers.read(hollow(p / "a.csv", b"curve\n")),
     "a mesh": lambda p: read_tagged(hollow(p / "a.msh", b"$MeshFormat\n4.1 1 8\n")),
-    "a scene": lambda p: scene_of(p / "a.toml"),
+    "a scene": lambda p: cases.load(lines(p / "a.toml", "a=1\n" * 600_000)),
     "a hollow scene": lambda p: cases.load(hollow(p / "a.toml", b"title = 'a'")),
 }
 

@@ -1,11 +1,11 @@
-"""Energy over very many steps, and what joints spend when they break."""
+"""Energy over very many steps."""
 
 from math import sqrt
 
 import numpy as np
 import pytest
 
-from hard_runs import EPS, JOINTED, HardRun, marked
+from hard_runs import EPS, HardRun
 
 MILLION, HUNDRED_THOUSAND = 1_000_000, 100_000
 TINY = {
@@ -27,7 +27,6 @@ BRICKS = {
     "record": {"points": [[1.2, 0.7]]},
     "numerics.continuum.size": 2.0,
 }
-SOFTENING = [one for one in JOINTED if one[1] != "fourth-order"]
 slow = pytest.mark.slow
 LONG = {
     "blocks": ("dem", "leapfrog", MILLION),
@@ -93,15 +92,3 @@ def test_dashpots_of_almost_nothing_have_a_trend():
     leaky = HardRun("dem", "leapfrog", TINY | {"joints.damping_ratio": 1e-12})
     trend, deviation = trend_of(leaky, HUNDRED_THOUSAND)
     assert trend > 4 * deviation
-
-
-@pytest.mark.parametrize(("engine", "scheme"), marked(SOFTENING))
-def test_breaking_costs_each_joint_its_fracture_energy(engine, scheme):
-    """G_c times the section, and no more. Just short of a snap-back a joint softens over a
-    thousandth of its opening, so none is caught on the way and the energy is that of a whole number
-    of joints, of which there are N - 1; to a thousandth, as joints open within a step."""
-    run = HardRun(engine, scheme, variant="softening just short of a snap-back")
-    spent = float(run.result["energy"].sel(term="fracture").values[-1])
-    joints = spent / (run.scene.joints.fracture_energy * run.properties.area)
-    assert 0.5 < joints < run.properties.block_count - 0.5
-    assert abs(joints - round(joints)) <= 1e-3

@@ -107,42 +107,6 @@ def test_plane_waves_at_parallel_joints_are_the_exact_ones(variant):
 
 
 @pytest.mark.parametrize(
-    ("engine", "scheme", "changes"),
-    [
-        ("dem", "leapfrog", {}),
-        pytest.param(
-            "continuum-jointed",
-            "implicit",
-            {"rock.intact_modulus": 5e10, "numerics.continuum.size": 1.0},
-            marks=pytest.mark.slow,
-        ),
-    ],
-)
-def test_blocks_on_a_far_stiffer_set_are_one_block(engine, scheme, changes):
-    """The scene without that set, at the same step. A set of compliance delta over that of what
-    lies between (joints of rigid blocks, confined rock over its spacing) lowers a frequency by at
-    most delta / 2 of it in the mean over stresses, here taken four times for their concentration:
-    2 delta omega t of phase, and delta at once. Solving with a stiffness 1 / delta as large as the
-    rock's, implicit steps add eps / delta; others an eps a step."""
-    run = HardRun(engine, scheme, CONTRAST | changes, BRICKS)
-    alone = {"joint_sets": [BEDS]}
-    between = LAW["normal_stiffness"]
-    if engine == "dem":
-        plain = run.engine.prepare(run.read(**alone))
-        alone["step"] = run.dt / plain.critical * (1 + 1e-12)
-    else:
-        rock = elastic_rock(run.scene.rock)
-        between = float(rock.p_impedance * rock.p_speed) / STIFF["spacing"]
-    other = run.run(**alone)
-    assert run.dt == pytest.approx(other.attrs["dt"], rel=1e-9)
-    delta = between / STIFF["normal_stiffness"]
-    bound = delta * (1 + 2 * run.peak * run.duration)
-    bound += EPS / delta if scheme == "implicit" else ROUND_OFF * run.steps
-    found = relative_l2(run.result["displacement"].values, other["displacement"].values)
-    assert found <= bound
-
-
-@pytest.mark.parametrize(
     ("engine", "scheme"), [("dem", "leapfrog"), ("continuum-jointed", "explicit")]
 )
 def test_no_joint_carries_more_shear_than_friction(engine, scheme):
