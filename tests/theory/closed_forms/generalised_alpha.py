@@ -7,7 +7,8 @@ A mode of frequency omega and damping ratio xi, q'' + 2 xi omega q' + omega^2 q 
 
 g = 2 xi omega v + omega^2 q (Chung & Hulbert, J. Appl. Mech. 60, 1993). One step multiplies
 (q, dt v, dt^2 a) by the amplification matrix, whose eigenvalues decide on stability (Hughes, The
-Finite Element Method, 2000, section 9.3). Constants are (alpha_m, alpha_f, beta, gamma), x = omega dt.
+Finite Element Method, 2000, section 9.3). Constants are (alpha_m, alpha_f, beta, gamma), and
+x = omega dt.
 
 Linear undamped systems decouple into such modes (`leapfrog.modes`), and so do those with dashpots
 in proportion to their springs, xi = eta omega / 2.

@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
-from scipy.special import erfc
 
-from closed_forms.oblique_joint import coefficients
-from closed_forms.one_joint import relaxed_sine
 from jointwave.compare.exact import inversion
 from jointwave.compare.exact.plane import layer_pulses, parallel_joints
 from jointwave.compare.exact.plane.layer_pulses import fields
 from jointwave.compare.exact.plane.oblique_joint import Joint
+from jointwave.compare.exact.plane.parallel_joints import coefficients
 from jointwave.compare.exact.plane.waves import polarisations
 
 TRAVELS = [("P", 0), ("P", 50), ("P", 130), ("SV", 25), ("SV", -60), ("SV", 200)]
@@ -104,53 +102,6 @@ def test_the_rock_holds(rock, joint, ricker, directed, kind, degrees, z):
     assert np.abs(rates[:, 2:-2] - expected).max() < 1e-5 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("kind", ["P", "SV"])
-def test_normal_incidence_in_closed_form(rock, kind):
-    """(Z/2K) v_T' + v_T = v_I for a Gaussian of deviation s is an exponentially modified Gaussian;
-    SV moves the particles along -x where it travels along y."""
-    K, s, t0 = 3e9, 1e-3, 0.01
-    Z = rock.p_impedance if kind == "P" else rock.s_impedance
-    c = rock.p_speed if kind == "P" else rock.s_speed
-    tau, times = Z / (2 * K), np.linspace(0, 0.05, 1001)
-    joint, up = Joint(K, K), (kind, [0, 1])
-
-    def gaussian(t):
-        return np.exp(-(((t - t0) / s) ** 2) / 2)
-
-    found = at_one_joint(rock, joint, up, gaussian, 0.0, [[8.0, 15.0]], times)
-    x = times - t0 - 15 / c
-    modified = np.exp(s**2 / (2 * tau**2) - x / tau) * erfc((s / tau - x / s) / np.sqrt(2))
-    expected = s / tau * np.sqrt(np.pi / 2) * modified
-    component, sign = (1, 1) if kind == "P" else (0, -1)
-    off = np.abs(found.velocity[0, component] - sign * expected).max()
-    assert off <= found.velocity_error[0, component] < 1e-9
-    row = 1 if kind == "P" else 2
-    off = np.abs(found.stress[0, row] + sign * Z * expected).max()
-    assert off <= found.stress_error[0, row] < 1e-9 * Z
-
-
-@pytest.mark.parametrize("eta", [0.0, 2e6])
-def test_half_a_sine_in_closed_form(rock, eta):
-    """P at normal incidence. With tau = (Z + 2 eta)/2K the share 2 eta/(Z + 2 eta) passes at once,
-    and the rest as s, tau s' + s = v_I; the kinks and the front are within the bound too."""
-    K, Z, T, times = 3e9, rock.p_impedance, 0.01, np.linspace(0, 0.05, 701)
-    tau, share, w = (Z + 2 * eta) / (2 * K), 2 * eta / (Z + 2 * eta), np.pi / T
-
-    def half_sine(t):
-        return np.where((t > 0) & (t < T), np.sin(w * t), 0.0)
-
-    def passed(t):
-        return share * half_sine(t) + (1 - share) * relaxed_sine(t, w, T, tau)
-
-    joint, places = Joint(K, K, eta, eta), [[0.0, -20.0], [3.0, 20.0]]
-    found = at_one_joint(rock, joint, ("P", [0, 1]), half_sine, 0.0, places, times)
-    later, back = times - 20 / rock.p_speed, times + 20 / rock.p_speed
-    front = half_sine(back) * (back > times[0]) + half_sine(later) - passed(later)
-    for row, expected in enumerate((front, passed(later))):
-        off = np.sqrt(np.mean((found.velocity[row, 1] - expected) ** 2))
-        assert off <= found.velocity_error[row, 1] < 2e-5
-
-
 @pytest.mark.parametrize("degrees", [25.0, 50.0, 85.0])
 @pytest.mark.parametrize("x, y", [(0.0, -10.0), (4.0, 10.0)])
 def test_evanescent_waves_by_quadrature(rock, joint, directed, degrees, x, y):
@@ -163,7 +114,7 @@ def test_evanescent_waves_by_quadrature(rock, joint, directed, degrees, x, y):
     F = s * np.sqrt(2 * np.pi) * np.exp(-((s * omega) ** 2) / 2 + 1j * omega * t0)
     angle = np.radians(degrees)
     p = np.sin(angle) / rock.s_speed
-    R_p, R_s, T_p, T_s = coefficients("SV", -angle, omega, rock, joint)
+    R_p, R_s, T_p, T_s = coefficients("SV", -angle, omega, rock, [joint], [])
     g = polarisations(rock, -p)
     q_p, q_s = (np.sqrt(1 / c**2 - p**2 + 0j) for c in (rock.p_speed, rock.s_speed))
     fast, slow = (np.exp(1j * omega * (p * x + q * abs(y))) for q in (q_p, q_s))
@@ -232,3 +183,30 @@ def test_incident_alone_without_joints(rock, ricker, directed):
             expected = ricker(times - arrival[:, None])[:, None] * g[:, None]
             off = np.abs(found.velocity - expected).max(axis=-1)
             assert (off <= found.velocity_error).all() and off.max() < 1e-9
+
+
+JOINTS, OFFSETS = [Joint(4e9, 2e9), Joint(8e9, 2e9, 1e6, 3e6)], [0.0, 6.0]
+TIMES = np.linspace(0, 0.05, 501)
+
+
+@pytest.mark.parametrize("kind, degrees", [("P", 40), ("P", -150), ("SV", 10), ("SV", -60)])
+def test_many_places_have_the_motion_of_each_to_a_billionth(rock, ricker, directed, kind, degrees):
+    """In front of, between and behind joints; the last is evanescent, interpolated in its depth."""
+    points = np.random.default_rng(1).uniform(-15, 25, (200 if degrees == -60 else 9, 2))
+    stack = parallel_joints.stack_of(
+        [rock] * 3, JOINTS, kind, directed(degrees), turned(DIP)[1], OFFSETS
+    )
+    every = layer_pulses.motion(ricker, stack, points, TIMES)
+    some = layer_pulses.motion(ricker, stack, points[:9:2], TIMES)
+    for one, other, unit in zip(every, some, (1.0, rock.p_impedance), strict=True):
+        assert np.abs(one[:9:2] - other).max() < 2e-9 * unit
+        assert np.abs(other).max() > 0.1 * unit
+
+
+def test_later_times_and_coarser_ones_give_the_same_motion(rock, ricker, directed):
+    points = np.random.default_rng(3).uniform(-15, 25, (5, 2))
+    stack = parallel_joints.stack_of([rock] * 3, JOINTS, "P", directed(40), turned(DIP)[1], OFFSETS)
+    whole = layer_pulses.motion(ricker, stack, points, TIMES)
+    part = layer_pulses.motion(ricker, stack, points, TIMES[200:401:4])
+    for one, other, unit in zip(whole, part, (1.0, rock.p_impedance), strict=True):
+        assert np.abs(one[..., 200:401:4] - other).max() < 1e-9 * unit

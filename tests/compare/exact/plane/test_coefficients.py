@@ -1,0 +1,248 @@
+"""Harmonic waves at one joint, at parallel ones and in layers, at any angle: boundary conditions,
+Zoeppritz, energy, the bar."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from closed_forms import parallel_joints as normal_incidence
+from jointwave.cases.material.rock import ElasticRock
+from jointwave.compare.exact.bar.transfer import Bar, End, RockFrom, transfer
+from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane.oblique_joint import Joint, scattering
+from jointwave.compare.exact.plane.parallel_joints import coefficients
+from jointwave.compare.exact.plane.waves import cosines, slowness_along
+
+OMEGA = 2 * np.pi * 100.0
+KINDS = pytest.mark.parametrize("kind", ["P", "SV"])
+WELDED = Joint(np.inf, np.inf)
+SOFT = ElasticRock(2200.0, 3000.0, 1600.0)
+HARD = ElasticRock(2700.0, 5200.0, 3000.0)
+SLAB = ElasticRock(2500.0, 4000.0, 2200.0)
+
+
+def plain(rock):
+    return rock.density, rock.p_speed, rock.s_speed
+
+
+@KINDS
+@pytest.mark.parametrize("count", [1, 2, 6])
+def test_all_boundary_conditions_at_once_agree(referee, kind, count):
+    """4 N equations for 4 N amplitudes by numpy, joints and spacings of each their own, dashpots:
+    round-off over the condition of that system, which grows towards grazing incidence."""
+    rng = np.random.default_rng(count)
+    for _ in range(40):
+        b = rng.uniform(500, 4000)
+        rock = (rng.uniform(1500, 3500), b * rng.uniform(1.05, 6), b)
+        scale = rock[0] * b * np.array([OMEGA, OMEGA, 1, 1])
+        joints = [tuple(scale * 10 ** rng.uniform(-1.5, 1.5, 4)) for _ in range(count)]
+        spacings = list(rng.uniform(0.02, 0.6, count - 1) * b / 100)
+        angle, own = rng.uniform(-1.5, 1.5), ElasticRock(*rock)
+        found = coefficients(kind, angle, OMEGA, own, [Joint(*j) for j in joints], spacings)
+        slowness = float(slowness_along(own, kind, angle))
+        expected = referee(rock, joints, spacings).solve(kind, slowness, OMEGA)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=2e-11)
+
+
+@KINDS
+def test_those_of_a_joint_between_unlike_rocks_agree(referee, kind):
+    """Random, with dashpots, evanescent waves among them, at round-off over their condition."""
+    rng, k = np.random.default_rng(1), ["P", "SV"].index(kind)
+    for _ in range(40):
+        rocks = [
+            (rng.uniform(1500, 3500), b * rng.uniform(1.5, 3), b) for b in rng.uniform(800, 3500, 2)
+        ]
+        law = *10 ** rng.uniform(8, 12, 2), *10 ** rng.uniform(4, 7, 2)
+        slowness = rng.uniform(-0.95, 0.95) / rocks[0][1 + k]
+        one, two = (ElasticRock(*rock) for rock in rocks)
+        R, T = scattering(one, Joint(*law), slowness, OMEGA, two)
+        expected = referee(rocks, [law], []).solve(kind, slowness, OMEGA)
+        found = np.concatenate([R[:, k], T[:, k]])
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("degrees", [0, 10, 25, 34])
+def test_a_welded_contact_is_that_of_zoeppritz(degrees):
+    """P from above, in the form of Aki & Richards (2002), (5.38) to (5.40), of displacement."""
+    one, two, p = SOFT, HARD, np.sin(np.radians(degrees)) / SOFT.p_speed
+    (rho1, a1, b1), (rho2, a2, b2) = plain(one), plain(two)
+    i1, j1, i2, j2 = (np.sqrt(1 / c**2 - p**2) for c in (a1, b1, a2, b2))
+    a = rho2 * (1 - 2 * b2**2 * p**2) - rho1 * (1 - 2 * b1**2 * p**2)
+    b = rho2 * (1 - 2 * b2**2 * p**2) + 2 * rho1 * b1**2 * p**2
+    c = rho1 * (1 - 2 * b1**2 * p**2) + 2 * rho2 * b2**2 * p**2
+    d = 2 * (rho2 * b2**2 - rho1 * b1**2)
+    E, F, G, H = b * i1 + c * i2, b * j1 + c * j2, a - d * i1 * j2, a - d * i2 * j1
+    D = E * F + G * H * p**2
+    expected = [
+        ((b * i1 - c * i2) * F - (a + d * i1 * j2) * H * p**2) / D,
+        -2 * i1 * (a * b + c * d * i2 * j2) * p * a1 / (b1 * D),
+        2 * rho1 * i1 * F * a1 / (a2 * D),
+        2 * rho1 * i1 * H * p * a1 / (b2 * D),
+    ]
+    R, T = scattering(one, WELDED, p, OMEGA, two)
+    found = np.concatenate([R[:, 0], T[:, 0]])
+    np.testing.assert_allclose(np.abs(found), np.abs(expected), rtol=0, atol=1e-14)
+
+
+@KINDS
+def test_layers_met_at_a_slant_are_the_system_of_all_conditions(referee, kind):
+    """Three unlike layers and the rock behind, joints between them that differ."""
+    rocks, joints = [SOFT, HARD, SLAB, HARD], [Joint(1e10, 4e9), Joint(1e16, 1e16), Joint(3e9, 2e9)]
+    spacings, p, k = [7.0, 11.0], 1.2e-4, ["P", "SV"].index(kind)
+    R, Y = parallel_joints.march(rocks, joints, spacings, p, OMEGA)
+    T = Y[0]
+    for rock, d, y in zip(rocks[1:], spacings, Y[1:], strict=False):
+        q = np.array(cosines(rock, p)) / [rock.p_speed, rock.s_speed]
+        T = y @ (np.exp(1j * OMEGA * d * q)[:, None] * T)
+    laws = [(one.normal_stiffness, one.shear_stiffness, 0.0, 0.0) for one in joints]
+    expected = referee([plain(one) for one in rocks], laws, spacings).solve(kind, p, OMEGA)
+    np.testing.assert_allclose(np.append(R[0][:, k], T[:, k]), expected, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("degrees", [0, 20, 80])
+def test_sh_in_closed_form(degrees):
+    """T = 1 / (1 - i x), x = omega Z_s cos(phi) / 2 K_s with K_s - i omega eta of a dashpot;
+    R = 1 - T."""
+    rock, phi = ElasticRock(2600.0, 5000.0, 2900.0), np.radians(degrees)
+    omega, K = np.array([10.0, 500.0, 4e3]), 3e9
+    for eta in (0.0, 2e6):
+        R, T = coefficients("SH", phi, omega, rock, [Joint(1e9, K, 1e5, eta)], [])
+        x = omega * rock.s_impedance * np.cos(phi) / (2 * (K - 1j * omega * eta))
+        np.testing.assert_allclose(T, 1 / (1 - 1j * x), rtol=1e-13)
+        np.testing.assert_allclose(R, 1 - T, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("kind, degrees", [("P", 0), ("SV", 0), ("SH", 0), ("SH", 30), ("SH", 70)])
+@pytest.mark.parametrize("count", [2, 5, 40])
+def test_many_joints_are_the_closed_form(rock, joint, kind, degrees, count):
+    """|T| by Chebyshev polynomials at kappa = 1 / cos(phi), spacings over the wavelength across."""
+    cos, speed = np.cos(np.radians(degrees)), rock.p_speed if kind == "P" else rock.s_speed
+    spacings = [0.1 * speed / 100] * (count - 1)
+    found = coefficients(kind, np.radians(degrees), OMEGA, rock, [joint] * count, spacings)
+    own = found[{"P": 2, "SV": 3, "SH": 1}[kind]]
+    expected = normal_incidence.transmission(count, 1 / cos, 0.1 * cos)
+    assert abs(own) == pytest.approx(expected, rel=1e-11)
+    assert np.sum(np.abs(found) ** 2) == pytest.approx(1.0, abs=1e-11)
+
+
+@KINDS
+def test_energy_flux_sums_to_one(rock, kind):
+    """Also with evanescent P waves, which carry energy from joint to joint but not away; a dashpot
+    takes a part."""
+    rng = np.random.default_rng(7)
+    joints = [Joint(*(1e9 * 10 ** rng.uniform(0, 2, 2))) for _ in range(8)]
+    damped = [*joints[:-1], replace(joints[-1], normal_viscosity=1e6, shear_viscosity=1e6)]
+    spacings, angle = rng.uniform(0.5, 20, 7), np.linspace(-1.55, 1.55, 200)
+    c, k = (x.real for x in cosines(rock, slowness_along(rock, kind, angle)))
+    carried = np.stack([rock.p_impedance * c, rock.s_impedance * k] * 2)
+    carried = carried / carried[["P", "SV"].index(kind)]
+    for omega in (100.0, 1000.0):
+        flux = carried * np.abs(coefficients(kind, angle, omega, rock, joints, spacings)) ** 2
+        assert np.abs(flux.sum(axis=0) - 1).max() < 1e-11
+        flux = carried * np.abs(coefficients(kind, angle, omega, rock, damped, spacings)) ** 2
+        assert (flux.sum(axis=0) < 1).all()
+
+
+def test_reciprocity():
+    """Over the square roots of the waves' fluxes R and T are symmetric."""
+    rng, count = np.random.default_rng(3), 300
+    b = rng.uniform(500, 4000, count)
+    rock = ElasticRock(rng.uniform(1500, 3500, count), b * rng.uniform(1.05, 6, count), b)
+    scale = np.array([rock.p_impedance, rock.s_impedance])
+    K, eta = scale * OMEGA * 10 ** rng.uniform(-3, 3, (2, count)), scale * rng.uniform(0, 2)
+    slowness = slowness_along(rock, "P", rng.uniform(-np.pi / 2, np.pi / 2, count))
+    R, T = scattering(rock, Joint(*K, *eta), slowness, OMEGA)
+    c, k = (x.real for x in cosines(rock, slowness))
+    out = np.sqrt(np.stack([rock.p_impedance * c, rock.s_impedance * k], axis=-1))
+    for x in (out[:, :, None] * x / out[:, None, :] for x in (R, T)):
+        assert np.abs(x[:, 0, 1] - x[:, 1, 0]).max() < 1e-11
+
+
+@KINDS
+def test_no_joint_and_free_faces(kind):
+    """K = inf passes everything; K = 0 is a free face (Aki & Richards, 2002, chapter 5) that passes
+    nothing; both are limits."""
+    rock, angle = ElasticRock(2600.0, 5000.0, 2900.0), np.radians(np.linspace(-89, 89, 90))
+
+    def at(K):
+        return np.array(coefficients(kind, angle, OMEGA, rock, [Joint(K, K)], []))
+
+    assert np.abs(at(np.inf) - np.eye(4)[2 + (kind == "SV")][:, None]).max() < 1e-13
+    assert np.abs(at(1e25) - at(np.inf)).max() < 1e-12
+    p, (a, b) = slowness_along(rock, kind, angle), (5000.0, 2900.0)
+    xi, eta = (x / speed for x, speed in zip(cosines(rock, p), (a, b), strict=True))
+    one, two = (1 / b**2 - 2 * p**2) ** 2, 4 * p**2 * xi * eta
+    cross = 4 * p * (1 / b**2 - 2 * p**2)
+    if kind == "P":
+        expected = (two - one) / (two + one), a / b * cross * xi / (two + one)
+    else:
+        expected = b / a * cross * eta / (two + one), (one - two) / (two + one)
+    np.testing.assert_allclose(at(0.0)[:2], expected, atol=1e-13)
+    assert np.abs(at(0.0)[2:]).max() < 1e-13
+    assert np.abs(at(1e-10) - at(0.0)).max() < 1e-12
+
+
+def test_a_lubricated_joint_passes_no_shear(rock):
+    """K_s = 0, K_n = inf: the waves behind carry no shear stress, X T_p + C T_s = 0."""
+    angle = np.radians(35.0)
+    *_, T_p, T_s = coefficients("P", angle, OMEGA, rock, [Joint(np.inf, 0.0)], [])
+    s = np.sin(angle) / np.sqrt(3)
+    shear = 2 * s * np.cos(angle) * T_p + (1 - 2 * s**2) * T_s
+    assert abs(shear) < 1e-15 and abs(T_s) > 0.1
+
+
+def test_joints_far_apart_in_evanescent_waves(rock, joint):
+    """P waves decayed by e^-2000 between the joints neither overflow nor matter: two joints of SV
+    alone are a Fabry-Perot of their T_s and R_s."""
+    angle, d = np.radians(70.0), 1e5 / 3
+    _, R_s, _, T_s = coefficients("SV", angle, OMEGA, rock, [joint], [])
+    e = np.exp(1j * OMEGA * d * np.cos(angle) / rock.s_speed)
+    found = coefficients("SV", angle, OMEGA, rock, [joint] * 2, [d])
+    assert found[3] == pytest.approx(T_s * e * T_s / (1 - (R_s * e) ** 2), rel=1e-9)
+
+
+@pytest.mark.parametrize(("kind", "degrees"), [("P", 0), ("SV", 0), ("SH", 25)])
+def test_straight_on_they_are_a_bar_of_segments(kind, degrees):
+    """The bar of the P-wave or the shear modulus in the Laplace variable s = -i omega, behind a
+    dashpot at both ends: velocity at one place in each layer, at round-off. So are SH waves at a
+    slant, with the density rho cos^2(phi) of each layer: rho b cos(phi) and b / cos(phi)."""
+    rocks, offsets = [SOFT, HARD, SLAB], np.array([10.0, 25.0])
+    joints = [Joint(np.inf, np.inf), Joint(6e9, 3e9)]
+    name, stiffness = ("p_speed", 6e9) if kind == "P" else ("s_speed", 3e9)
+    omega = OMEGA * np.linspace(0.3, 3, 20) + 30j
+    moduli = [one.density * getattr(one, name) ** 2 for one in rocks]
+    sines = [
+        getattr(one, name) / getattr(SOFT, name) * np.sin(np.radians(degrees)) for one in rocks
+    ]
+    density = [one.density * (1 - sine**2) for one, sine in zip(rocks, sines, strict=True)]
+    z = [np.sqrt(density[k] * moduli[k]) for k in (0, -1)]
+    parts = [RockFrom(*each, 0.0) for each in zip((0.0, 10.0, 25.0), density, moduli, strict=True)]
+    joint = offsets[1:], np.array([1 / stiffness]), np.zeros(1)
+    bar = Bar(40.0, tuple(parts), *joint, End(z[0]), End(z[1]))
+    places = np.array([4.0, 20.0, 33.0])
+    exact = transfer(bar, -1j * omega, places)[1] * 2 * z[0]
+    travel, n = np.array([np.sin(np.radians(degrees)), np.cos(np.radians(degrees))]), [0.0, 1.0]
+    stack = parallel_joints.stack_of(rocks, joints, kind, travel, np.array(n), offsets)
+    down, up = stack.layers(omega)
+    k, lead = stack.axes.kinds.index(kind), np.exp(1j * omega * stack.lead)
+    found = []
+    for layer, y in enumerate(places):
+        q = stack.slownesses[layer, k]
+        first, last = offsets[max(layer - 1, 0)], offsets[min(layer, 1)]
+        sign = -1 if kind == "P" else 1
+        there = down[layer, :, k] * np.exp(1j * omega * q * (y - first))
+        found.append(lead * (there + sign * up[layer, :, k] * np.exp(1j * omega * q * (last - y))))
+    np.testing.assert_allclose(np.array(found), exact, rtol=0, atol=1e-12)
+
+
+def test_amplitudes_in_layers_repeat_to_the_last_bit(directed):
+    """Wherever in memory numpy puts what it multiplies: other arrays come and go in between."""
+    rocks, joints, offsets = [SLAB, HARD, SOFT], [WELDED, Joint(8e9, 3e9)], [0.0, 6.0]
+    stack = parallel_joints.stack_of(rocks, joints, "P", directed(150), directed(-20), offsets)
+    omega = np.linspace(1.0, 1e5, 5684) + 30j
+    expected, random, others = stack.layers(omega), np.random.default_rng(1), []
+    for _ in range(60):
+        others = [*others[-20:], np.empty(int(random.integers(1, 60_000)))]
+        for one, known in zip(stack.layers(omega), expected, strict=True):
+            assert (one == known).all()
