@@ -14,16 +14,10 @@ from jointwave.compare.misfit.metrics import misfit, relative_l2
 from jointwave.compare.scenes import shipped_files
 from jointwave.results.dataset import energy_residual
 
+PLANE_WAVES = ("oblique-joint", "parallel-joints", "normal-incidence")
 REFEREES = {
     "dem": ("lattice", "no-tension-chain", "spatial-lattice"),
-    "continuum-jointed": (
-        "jointed-bar",
-        "oblique-joint",
-        "parallel-joints",
-        "line-force",
-        "point-force",
-        "normal-incidence",
-    ),
+    "continuum-jointed": ("jointed-bar", *PLANE_WAVES, "line-force", "point-force"),
     "continuum-equivalent": ("equivalent-bar", "images", "kelvin-voigt", "effective-medium"),
 }
 BOUNDS = {"dem": 2e-3, "continuum-jointed": 5e-3, "continuum-equivalent": 5e-3}

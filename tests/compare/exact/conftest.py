@@ -1,14 +1,11 @@
 """Scenes for the exact solutions: the paper's pillar with tables changed, and the misfit."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from jointwave.cases import Scene
 
-PILLAR: dict[str, Any] = {
+PILLAR = {
     "title": "the paper's pillar",
     "pillar": {"length": 50.0, "side": 0.5, "block": 0.5},
     "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10},
@@ -19,10 +16,10 @@ PILLAR: dict[str, Any] = {
 
 
 @pytest.fixture
-def scene() -> Callable[..., Scene]:
+def scene():
     """Return the paper's pillar; a keyword's table is merged into the scene's, a list replaces."""
 
-    def make(**tables: Any) -> Scene:
+    def make(**tables):
         merged = {
             key: value if isinstance(value, list) else {**PILLAR.get(key, {}), **value}
             for key, value in tables.items()
@@ -33,10 +30,10 @@ def scene() -> Callable[..., Scene]:
 
 
 @pytest.fixture
-def misfit() -> Callable[..., float]:
+def misfit():
     """Return the relative L2 misfit ||a - b|| / ||b|| of two results' variable, or of arrays."""
 
-    def relative(a: Any, b: Any, variable: str = "stress") -> float:
+    def relative(a, b, variable="stress"):
         a, b = (np.asarray(x[variable] if hasattr(x, "data_vars") else x) for x in (a, b))
         assert a.shape == b.shape
         return float(np.linalg.norm(a - b) / np.linalg.norm(b))

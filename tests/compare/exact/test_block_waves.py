@@ -68,10 +68,3 @@ def test_waves_along_an_axis_of_cubes():
         for axis in np.eye(3):
             found = modes(cubes([2, 2, 2]), X / A * axis)[0] ** 2
             assert len(found) == 48 and among(found, np.array([*single, *pair]))
-
-
-def test_oblique_waves_in_the_plane_of_cubes_are_those_of_squares():
-    """Faces across the plane strain nothing where all layers move alike."""
-    for k in np.random.default_rng(4).uniform(-np.pi / A, np.pi / A, (10, 2)):
-        found = modes(cubes([2, 2, 3]), np.append(k, 0.0))[0] ** 2
-        assert among(found, square_modes(square(), k)[0] ** 2)

@@ -94,15 +94,13 @@ def test_a_water_level_holds_noise_back():
     assert not np.abs(free - pulse).max() < PULSE.amplitude
 
 
+FREE = {"ends": {"start": "free", "end": "free"}, "load": {"shape": "step", "amplitude": 1.0}}
+NOT_LINEAR = {"joints": {"tension": False}}
+
+
 @pytest.mark.parametrize(
     "tables, words",
-    [
-        (
-            {"ends": {"start": "free", "end": "free"}, "load": {"shape": "step", "amplitude": 1.0}},
-            "the ends are not quiet and free",
-        ),
-        ({"joints": {"tension": False}}, "a joint carries no tension"),
-    ],
+    [(FREE, "the ends are not quiet and free"), (NOT_LINEAR, "a joint carries no tension")],
 )
 def test_a_column_that_is_not_linear_is_refused(tables, words):
     scene = column(**tables)

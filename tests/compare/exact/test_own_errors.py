@@ -9,8 +9,8 @@ from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.bar import images, modes
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.events import integrate
-from jointwave.compare.exact.blocks.pillar import drive_vector, system_of
-from jointwave.compare.exact.blocks.row_of_blocks import reads, receivers
+from jointwave.compare.exact.blocks.pillar import system_of
+from jointwave.compare.exact.blocks.row_of_blocks import receivers
 from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.joint import one_joint
 
@@ -60,51 +60,20 @@ extended = pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="no ex
     "seed",
     [*range(5), 8, *(pytest.param(s, marks=pytest.mark.slow) for s in (5, 6, 7, *range(9, 80)))],
 )
-def test_of_the_lattice(scene, seed):
-    """Against Taylor series of the chain in extended precision."""
-    at = Scene.model_validate(random_table(scene, seed))
+def test_of_the_row_of_blocks(scene, seed):
+    """Against Taylor series in extended precision; of every third in space, a step across, off the
+    centre."""
+    table = random_table(scene, seed)
+    if seed % 3 == 0:
+        across = {"direction": [0.6, 0, 0.8], "at": [0.1, 0]}
+        table["load"] = {"shape": "step", "amplitude": 1e6} | across
+    at = Scene.model_validate(table)
     model, times, signal = system_of(at), sample_times(at), drive(at)
     fine = integrate(model, signal, times.astype(np.longdouble), at.load.period).states
-    found = row_of_blocks.solve(at)
-    for name, waves in receivers(at, model, fine.astype(float)).items():
-        holds(found, name, waves)
-
-
-@extended
-@pytest.mark.parametrize("seed", range(3))
-def test_of_the_spatial_lattice(scene, seed):
-    """A step across, off the centre, by Taylor series of each plane in extended precision."""
-    table = random_table(scene, seed)
-    table["load"] = {"shape": "step", "amplitude": 1e6, "direction": [0.6, 0, 0.8], "at": [0.1, 0]}
-    at = Scene.model_validate(table)
-    found, times, push = row_of_blocks.solve(at), sample_times(at), drive_vector(at)
-    one, (sections, points) = system_of(at), (np.kron(x, np.eye(6)) for x in reads(at))
-    states = of_step(one.matrix.toarray(), 1e6 * one.load, times).T
-    forces = sections @ (one.forces @ states)[: sections.shape[1]]
-    moved = (points @ (x @ states) for x in (one.displacement, one.velocity))
-    forces, motion, rate = (x.reshape(3, 6, len(times)) for x in (forces, *moved))
-    forces[0] = np.outer(push / at.pillar.area, drive(at).value(times))
-    if table["ends"]["start"] == "free":
-        holds(found, "shear", forces[:, [0, 2]])
-    holds(found, "velocity", rate[:, :3])
-    holds(found, "displacement", motion[:, :3])
-    holds(found, "rotation", motion[:, 3:])
-
-
-def of_step(matrix, vector, times):
-    """Return the states [n, m] of x' = A x + b from rest, by Taylor series of order 24."""
-    A, b = matrix.astype(np.longdouble), vector.astype(np.longdouble)
-    steps = int(np.ceil(times[1] * np.abs(matrix).sum(axis=1).max() / 2))
-    h, x, out = np.longdouble(times[1]) / steps, 0 * b, [0 * vector]
-    for _ in range(len(times) - 1):
-        for _ in range(steps):
-            term = h * (A @ x + b)
-            x = x + term
-            for k in range(2, 25):
-                term = A @ term * (h / k)
-                x = x + term
-        out.append(x.astype(float))
-    return np.array(out)
+    found, exact = row_of_blocks.solve(at), receivers(at, model, fine.astype(float))
+    for name, waves in exact.items():
+        if np.abs(waves).max() > 0:
+            holds(found, name, waves)
 
 
 @pytest.mark.parametrize(

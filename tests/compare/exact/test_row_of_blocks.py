@@ -13,8 +13,7 @@ from jointwave.cases.histories import Recorded
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
-from jointwave.compare.exact.bar import images, modes
-from jointwave.compare.exact.bar.bars import JOINTED
+from jointwave.compare.exact.bar import modes
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.pillar import system_of
 from jointwave.compare.exact.conditions import drive
@@ -27,7 +26,6 @@ CENTRES = {"stress": [0.5, 1.0, 1.5], "velocity": [0.25, 0.75, 1.25, 1.75], "int
 SOFT = [{"y": 1.0, "spacing_stiffness": 4.375e8, "shear_stiffness": 5e8, "damping_ratio": 0.1}]
 DOWN = {"direction": [0.0, 1.0, 0.0]}
 RECORD = {"stress": [0.0, 1.0, 20.0, 50.0], "velocity": [0.25, 20.25, 49.75]}
-FIELDS = ("stress", "velocity", "displacement")
 
 
 class Points:
@@ -208,20 +206,6 @@ def test_its_axial_part_is_the_axial_row(scene, misfit, start, end):
         assert misfit(spatial[variable][..., 1], axial[variable][..., 0]) < 1e-11
 
 
-@pytest.mark.parametrize("freedom", [0, 1])
-def test_without_rotations_shear_and_stretching_are_chains(scene, freedom):
-    """omega_n = 2 sqrt(k/m) sin(n pi / 2N), k = K'_s A or K'_n A, of shape
-    cos(n pi (j - 1/2) / N)."""
-    at = scene(pillar={"length": 3.0}, load=ACROSS, motion={"rotation": "none"}, record=CENTRES)
-    p, one = calibrate(at), system_of(at)
-    k = (p.regular_stiffness if freedom else p.regular_shear_stiffness) * p.area
-    shapes = np.zeros((6, 3, 6))
-    shapes[:, freedom] = np.cos(np.outer(np.arange(6) + 0.5, np.arange(6)) * np.pi / 6)
-    shapes = shapes.reshape(-1, 6)
-    inertial = leapfrog.frequencies(k, p.block_mass, 6) ** 2 * one.mass[:, None] * shapes
-    assert np.abs(one.stiffness @ shapes - inertial).max() < 1e-13 * np.abs(inertial).max()
-
-
 DAMPED = {"damping_ratio": 0.05}
 
 
@@ -261,20 +245,6 @@ def test_an_accelerated_base_is_gravity_in_its_own_frame(scene, misfit, tables, 
             assert misfit(shaken[variable], heavy[variable]) < bound
 
 
-def test_stress_is_the_contact_force_with_the_load_and_the_ends_as_nodes(scene):
-    """From the same result's displacements: K'_n times the closing of the joint; f at a free
-    loaded end; halfway between in between; nothing at the free far end."""
-    at = scene(
-        record={"stress": [0.0, 0.25, 0.5, 49.75, 50.0], "velocity": [0.25, 0.75, 49.25, 49.75]}
-    )
-    p, result = calibrate(at), row_of_blocks.solve(at)
-    u, sigma = result.displacement.values[..., 0], result.stress.values
-    f = load_history(at).value(result.time.values)
-    first, last = (p.regular_stiffness * (u[i] - u[i + 1]) for i in (0, 2))
-    expected = np.array([f, (f + first) / 2, first, last / 2, 0 * f])
-    assert np.abs(sigma - expected).max() < 1e-7 * 1e6
-
-
 def test_the_modes_of_a_chain_under_a_sine_agree(scene, misfit):
     """u_j = sum_n phi_n(j) phi_n(1) q_n A / m_n with q_n in closed form; round-off of 100 modes."""
     record = {"velocity": [0.25 + 0.5 * j for j in (0, 39, 99)]}
@@ -287,24 +257,6 @@ def test_the_modes_of_a_chain_under_a_sine_agree(scene, misfit):
     weights = p.area * shapes[0] / (p.block_mass * (shapes**2).sum(axis=0))
     expected = shapes[[0, 39, 99]] @ (weights[:, None] * q)
     assert misfit(row_of_blocks.solve(at).displacement.values[..., 0], expected) < 1e-10
-
-
-@pytest.mark.parametrize(
-    "period, bar, percent, digit",
-    [
-        (5e-3, images.solve, 78, 1),
-        (1e-2, images.solve, 17.9, 0.1),
-        (2e-2, images.solve, 5, 0.1),
-        (1e-2, JOINTED.run, 4.0, 0.1),
-    ],
-)
-def test_the_chain_is_as_far_off_the_bar_as_its_dispersion(
-    scene, misfit, period, bar, percent, digit
-):
-    """To half a unit of the last digit; nearer the bar with its joints resolved."""
-    at = scene(load={"period": period})
-    off = 100 * misfit(row_of_blocks.solve(at), bar(at))
-    assert off == pytest.approx(percent, abs=digit / 2)
 
 
 STILL = {"load": {"amplitude": 0.0}, "time": {"duration": 0.01}, "record": RECORD}
@@ -330,16 +282,6 @@ def test_a_prestressed_row_stands_still_where_displacement_counts_from(scene, en
     result = row_of_blocks.solve(at)
     assert not result.displacement.any()
     assert np.allclose(result.stress, 2e5, rtol=1e-12)
-
-
-def test_the_static_state_adds_to_what_the_load_does(scene, misfit):
-    common = {"ends": {"start": "quiet", "end": "fixed"}, "record": RECORD}
-    pressed = {"prestress": {"normal": 2e5}}
-    both = row_of_blocks.solve(scene(**common, gravity=DOWN, **pressed))
-    load = row_of_blocks.solve(scene(**common, **pressed))
-    rest = row_of_blocks.solve(scene(**common, gravity=DOWN, load={"amplitude": 0.0}))
-    for variable in FIELDS:
-        assert misfit(both[variable], load[variable] + rest[variable]) < 1e-12
 
 
 @pytest.mark.parametrize("axis, turns, sign", [(0, 2, 1), (2, 0, -1)])

@@ -12,23 +12,20 @@ G = 9.81
 
 @pytest.fixture
 def slope(scene):
-    """Return the scene of a block on a slope (degrees)."""
+    """Return a function of degrees of a slope and of friction: a block on it."""
 
-    def make(angle, friction=30.0, **tables):
+    def make(angle, friction=30.0, rotation="none"):
         beta = radians(angle)
-        common = {
-            "pillar": {"length": 1.0},
-            "joints": {"friction_angle": friction},
-            "load": {"amplitude": 0.0},
-            "ends": {"end": "fixed"},
-            "gravity": {
-                "direction": [0.6 * sin(beta), cos(beta), 0.8 * sin(beta)],
-                "static": False,
-            },
-            "motion": {"rotation": "none"},
-            "record": {"stress": [0.25, 0.5, 1.0], "velocity": [0.25, 0.5, 0.75]},
-        }
-        return scene(**common | tables)
+        way = [0.6 * sin(beta), cos(beta), 0.8 * sin(beta)]
+        return scene(
+            pillar={"length": 1.0},
+            joints={"friction_angle": friction},
+            load={"amplitude": 0.0},
+            ends={"end": "fixed"},
+            gravity={"direction": way, "static": False},
+            motion={"rotation": rotation},
+            record={"stress": [0.25, 0.5, 1.0], "velocity": [0.25, 0.5, 0.75]},
+        )
 
     return make
 
@@ -36,11 +33,10 @@ def slope(scene):
 def test_below_the_friction_angle_it_rests_and_shear_balances_its_weight(slope):
     result = sliding_block.solve(slope(29.9))
     assert not result.velocity.values.any() and not result.displacement.values.any()
-    along = sin(radians(29.9)) * 2400 * G * np.array([0.25, 0.5, 1.0])
-    assert np.allclose(np.linalg.norm(result.shear, axis=-1), along[:, None])
-    assert np.allclose(
-        result.stress[:, 0], cos(radians(29.9)) * 2400 * G * np.array([0.25, 0.5, 1])
-    )
+    weight = 2400 * G * np.array([0.25, 0.5, 1.0])
+    shear = np.linalg.norm(result.shear, axis=-1)
+    assert np.allclose(shear, sin(radians(29.9)) * weight[:, None])
+    assert np.allclose(result.stress[:, 0], cos(radians(29.9)) * weight)
 
 
 def test_above_it_accelerates_by_what_friction_leaves(slope):
@@ -64,5 +60,5 @@ def test_above_it_accelerates_by_what_friction_leaves(slope):
 def test_a_block_that_may_turn_topples_where_friction_holds_it(slope, angle, friction, topples):
     """What the joint carries leaves the face, a/2 = d/2 from the centre, where along z, of 0.8 of
     the slope, 0.8 min(tan beta, tan phi) exceeds 1: 0.29, 0.8, 1.14."""
-    answer = sliding_block.applies(slope(angle, friction, motion={"rotation": "small"}))
+    answer = sliding_block.applies(slope(angle, friction, "small"))
     assert answer.reason == ("the block topples" if topples else "")

@@ -126,23 +126,7 @@ def test_a_step_weakens_the_joint_in_closed_form(compliance):
     assert np.abs(found - s).max() < 1e-7 * q
 
 
-@pytest.mark.parametrize("compliance", [0.0, 1e-9])
-def test_a_joint_that_weakens_keeps_the_balance_of_energy(compliance):
-    """int sigma_I^2/Z = int (sigma_T^2 + sigma_R^2)/Z + int |s| dS + s^2/2K: the work at the joint,
-    by its slip from the impulses, and the trapezoid to h^2 and half a step at each onset."""
-    load, times = Sine(1.0, 0.01, 3), np.linspace(0.0, 0.05, 20_001)
-    joint = SlipJoint(0.0, compliance, 0.6, 0.2, 2e-3 / Z)
-    s, impulse = Passed(joint, Z, load, times[-1], 1e-11)(times)
-    incident, slip = load.value(times), 2 * (load.impulse(times) - impulse) / Z
-    slide = np.diff(slip - compliance * s)
-    mean = (s[1:] + s[:-1]) / 2
-    assert (mean * slide >= -1e-12 * np.abs(slide).max()).all()
-    spent = trapezoid((s**2 + (s - incident) ** 2) / Z, times) + mean @ slide
-    whole = trapezoid(incident**2 / Z, times)
-    assert abs(spent + compliance * s[-1] ** 2 / 2 - whole) < 2.5e-4 * whole
-
-
-def test_a_joint_that_is_lifted_keeps_the_balance_of_energy():
+def test_a_joint_that_weakens_and_is_lifted_keeps_the_balance_of_energy():
     """int sigma_I^2/Z = int (sigma_T^2 + sigma_R^2)/Z + 2 int p^2/Z_n + int (|s| - (n + p) w') dS +
     n w: what the pressure sends off on both sides, friction, the way against the prestress n."""
     load, times, n, z_n = Sine(1e6, 0.01, 3), np.linspace(0.0, 0.05, 40_001), 1e6, 5.28e6

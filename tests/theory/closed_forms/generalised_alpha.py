@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 Constants = tuple[float, float, float, float]
+Values = np.ndarray | float
 
 
 class Motion(NamedTuple):
@@ -29,9 +30,7 @@ class Motion(NamedTuple):
     acceleration: np.ndarray
 
 
-def amplification(
-    constants: Constants, x: np.ndarray | float, xi: np.ndarray | float = 0.0
-) -> np.ndarray:
+def amplification(constants: Constants, x: Values, xi: Values = 0.0) -> np.ndarray:
     """Return what a step without load multiplies (q, dt v, dt^2 a) by, [..., 3, 3].
 
     x : omega dt; xi : damping ratio; both of any shape.
@@ -39,13 +38,8 @@ def amplification(
     return np.linalg.solve(*_both_ends(constants, x, xi))
 
 
-def spectral_radius(
-    constants: Constants, x: np.ndarray | float, xi: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Return the largest factor by which a step multiplies any part of the mode; above 1 it grows.
-
-    Takes what `amplification` takes.
-    """
+def spectral_radius(constants: Constants, x: Values, xi: Values = 0.0) -> np.ndarray:
+    """Return the largest factor by which a step multiplies the mode; above 1 it grows."""
     return np.abs(np.linalg.eigvals(amplification(constants, x, xi))).max(axis=-1)
 
 
@@ -54,8 +48,8 @@ def response(
     omega: np.ndarray,
     force: np.ndarray,
     dt: float,
-    xi: np.ndarray | float = 0.0,
-    start: tuple[np.ndarray | float, np.ndarray | float] = (0.0, 0.0),
+    xi: Values = 0.0,
+    start: tuple[Values, Values] = (0.0, 0.0),
 ) -> Motion:
     """Return the exact discrete motion of modes: the method itself, step by step.
 
@@ -81,9 +75,7 @@ def response(
     return Motion(out[..., 0], out[..., 1] / dt, out[..., 2] / dt**2)
 
 
-def _both_ends(
-    constants: Constants, x: np.ndarray | float, xi: np.ndarray | float
-) -> tuple[np.ndarray, np.ndarray]:
+def _both_ends(constants: Constants, x: Values, xi: Values) -> tuple[np.ndarray, np.ndarray]:
     """Return L, R [..., 3, 3] of L X' = R X, X = (q, dt v, dt^2 a): the method as it stands."""
     alpha_m, alpha_f, beta, gamma = constants
     x, xi = np.broadcast_arrays(np.asarray(x, dtype=float), xi)

@@ -23,8 +23,7 @@ def slipping_joint(scene, points, times):
     dip, through = np.radians(joint.dip), np.array(joint.through)
     n = np.array([-np.sin(dip), np.cos(dip)])
     n *= np.sign(wave.direction @ n)
-    axes = np.array([[n[1], -n[0]], n])
-    axes[0] = [-n[1], n[0]]
+    axes = np.array([[-n[1], n[0]], n])
     a, b, rho = (float(getattr(wave.rock, k)) for k in ("p_speed", "s_speed", "density"))
     p = float(wave.direction @ axes[0]) / wave.speed
     q = np.sqrt(np.array([1 / a**2, 1 / b**2]) - p**2)
@@ -67,12 +66,8 @@ def tractions(joint, down, back, sent, arrives):
     """Return those of the joint at the samples of the incident pulse [samples, (t, n)], Pa."""
     Y, Y_back = (v @ np.linalg.inv(T) for v, T in (down, back))
     own, source = Y - Y_back, -down[0] @ sent + Y_back @ down[1] @ sent
-    K, jump, slip, found = (
-        np.array([joint.shear_stiffness, joint.normal_stiffness]),
-        np.zeros(2),
-        0.0,
-        [],
-    )
+    K = np.array([joint.shear_stiffness, joint.normal_stiffness])
+    jump, slip, found = np.zeros(2), 0.0, []
 
     def held(jump):
         T = K * (jump - [slip, 0.0])

@@ -1,5 +1,5 @@
 """Harmonic waves at one joint, at parallel ones and in layers, at any angle: boundary conditions,
-Zoeppritz, energy, the bar."""
+energy, the bar."""
 
 from dataclasses import replace
 
@@ -47,42 +47,21 @@ def test_all_boundary_conditions_at_once_agree(referee, kind, count):
 
 @KINDS
 def test_those_of_a_joint_between_unlike_rocks_agree(referee, kind):
-    """Random, with dashpots, evanescent waves among them, at round-off over their condition."""
+    """Random, with dashpots or welded (Zoeppritz), evanescent waves among them, at round-off over
+    their condition."""
     rng, k = np.random.default_rng(1), ["P", "SV"].index(kind)
-    for _ in range(40):
+    for n in range(40):
         rocks = [
             (rng.uniform(1500, 3500), b * rng.uniform(1.5, 3), b) for b in rng.uniform(800, 3500, 2)
         ]
         law = *10 ** rng.uniform(8, 12, 2), *10 ** rng.uniform(4, 7, 2)
+        law = law if n % 4 else (np.inf, np.inf, 0.0, 0.0)
         slowness = rng.uniform(-0.95, 0.95) / rocks[0][1 + k]
         one, two = (ElasticRock(*rock) for rock in rocks)
         R, T = scattering(one, Joint(*law), slowness, OMEGA, two)
         expected = referee(rocks, [law], []).solve(kind, slowness, OMEGA)
         found = np.concatenate([R[:, k], T[:, k]])
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
-
-
-@pytest.mark.parametrize("degrees", [0, 10, 25, 34])
-def test_a_welded_contact_is_that_of_zoeppritz(degrees):
-    """P from above, in the form of Aki & Richards (2002), (5.38) to (5.40), of displacement."""
-    one, two, p = SOFT, HARD, np.sin(np.radians(degrees)) / SOFT.p_speed
-    (rho1, a1, b1), (rho2, a2, b2) = plain(one), plain(two)
-    i1, j1, i2, j2 = (np.sqrt(1 / c**2 - p**2) for c in (a1, b1, a2, b2))
-    a = rho2 * (1 - 2 * b2**2 * p**2) - rho1 * (1 - 2 * b1**2 * p**2)
-    b = rho2 * (1 - 2 * b2**2 * p**2) + 2 * rho1 * b1**2 * p**2
-    c = rho1 * (1 - 2 * b1**2 * p**2) + 2 * rho2 * b2**2 * p**2
-    d = 2 * (rho2 * b2**2 - rho1 * b1**2)
-    E, F, G, H = b * i1 + c * i2, b * j1 + c * j2, a - d * i1 * j2, a - d * i2 * j1
-    D = E * F + G * H * p**2
-    expected = [
-        ((b * i1 - c * i2) * F - (a + d * i1 * j2) * H * p**2) / D,
-        -2 * i1 * (a * b + c * d * i2 * j2) * p * a1 / (b1 * D),
-        2 * rho1 * i1 * F * a1 / (a2 * D),
-        2 * rho1 * i1 * H * p * a1 / (b2 * D),
-    ]
-    R, T = scattering(one, WELDED, p, OMEGA, two)
-    found = np.concatenate([R[:, 0], T[:, 0]])
-    np.testing.assert_allclose(np.abs(found), np.abs(expected), rtol=0, atol=1e-14)
 
 
 @KINDS

@@ -201,12 +201,3 @@ def test_many_places_have_the_motion_of_each_to_a_billionth(rock, ricker, direct
     for one, other, unit in zip(every, some, (1.0, rock.p_impedance), strict=True):
         assert np.abs(one[:9:2] - other).max() < 2e-9 * unit
         assert np.abs(other).max() > 0.1 * unit
-
-
-def test_later_times_and_coarser_ones_give_the_same_motion(rock, ricker, directed):
-    points = np.random.default_rng(3).uniform(-15, 25, (5, 2))
-    stack = parallel_joints.stack_of([rock] * 3, JOINTS, "P", directed(40), turned(DIP)[1], OFFSETS)
-    whole = layer_pulses.motion(ricker, stack, points, TIMES)
-    part = layer_pulses.motion(ricker, stack, points, TIMES[200:401:4])
-    for one, other, unit in zip(whole, part, (1.0, rock.p_impedance), strict=True):
-        assert np.abs(one[..., 200:401:4] - other).max() < 1e-9 * unit

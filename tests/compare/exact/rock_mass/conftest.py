@@ -3,6 +3,7 @@
 from copy import deepcopy
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from jointwave.cases.validate import validated
@@ -59,3 +60,16 @@ def rock_mass():
         return validated(tables, Path("scene.toml"), frozenset())
 
     return scene
+
+
+@pytest.fixture(scope="session")
+def straight(rock_mass, joint, wave):
+    """A function of keys of the joint and of the wave, which meets the joint straight on at an
+    angle to the axes, and of the prestress."""
+    n = [-np.sin(np.radians(25.0)), np.cos(np.radians(25.0))]
+    whole = {"direction": n, "through": [16.0, -6.0]}
+    return lambda law, one, pressed=None: rock_mass(
+        joint_sets=[joint(**law)],
+        waves=[wave(**whole | one)],
+        **({"prestress": pressed} if pressed else {}),
+    )

@@ -1,10 +1,10 @@
-"""Scenes of rigid blocks exactly in time: a column that is a chain, and where they hold."""
+"""Scenes of rigid blocks exactly in time: a column that is a chain, and the engine's steps."""
 
 import numpy as np
 import pytest
 
 from jointwave.cases.histories import Ricker
-from jointwave.compare.engines import applies, solve
+from jointwave.compare.engines import solve
 from jointwave.compare.exact.linear import twins
 
 LAW = {"normal_stiffness": 4e10, "shear_stiffness": 2e10}
@@ -82,15 +82,6 @@ def test_a_column_under_a_p_wave_is_the_chain(blocks, dim):
         assert np.abs(found.velocity[point, :, :-1]).max() < 1e-12
 
 
-def test_oblique_waves_leave_through_quiet_sides(blocks, wave, dim):
-    """Long after a pulse of 5 ms next to nothing is left of the motion."""
-    waves = [wave(direction=SLANT[dim])]
-    found = solve("block-lattice", blocks(waves=waves, time={"duration": 0.04}))
-    v = np.abs(found.velocity).max(["point", "axis"]).values
-    assert v[-100:].max() < 1e-3 * v.max() and v.max() > 0.05
-    assert (found.velocity_error < 1e-7 * v.max()).all()
-
-
 @pytest.mark.parametrize("dip", [0.0, 20.0])
 def test_steps_of_the_engine_come_to_it_at_the_second_order(blocks, wave, dim, dip):
     """An oblique wave on boxes, and on blocks whose principal axes are oblique, with quiet sides
@@ -109,42 +100,3 @@ def test_steps_of_the_engine_come_to_it_at_the_second_order(blocks, wave, dim, d
         off.append([float(abs(found[x] - exact[x]).max() / abs(exact[x]).max()) for x in names])
     rate = np.log(np.divide(*off)) / np.log(steps[0] / steps[1])
     assert rate == pytest.approx(2, abs=0.1) and max(off[1]) < 2e-4
-
-
-NO = [
-    ({"waves": []}, "no wave enters"),
-    ({"loads": [{"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1.0}]},
-     "a load acts"),
-    ({"gravity": {"static": False}}, "gravity acts"),
-    ({"prestress": {"xx": 1e6, "yy": 1e6}}, "the rock is prestressed"),
-    ({"boundaries": {"top": "fixed"}}, "a side is fixed"),
-    ({"boundaries": {"top": "roller"}}, "a side is roller"),
-    ({"numerics": {"dem": {"block": 0.5}}}, "intact rock is subdivided into blocks"),
-    ({"damping": {"mass_proportional": 1.0}}, "the damping is proportional to mass"),
-    ({"domain": {"size": [60.0, 60.0]}}, "more than 1,000 blocks"),
-    ({"record": {"points": [], "fields": 1e-3, "joints": []}}, "no point is recorded"),
-]  # fmt: skip
-
-
-plane = pytest.mark.parametrize("dim", [2], indirect=True)
-
-
-@plane
-@pytest.mark.parametrize("changes, reason", NO)
-def test_it_says_why_it_does_not_hold(blocks, changes, reason):
-    assert applies("block-lattice", blocks(**changes)).reason == reason
-
-
-@plane
-def test_it_holds_for_blocks_between_linear_joints_alone(blocks, joint, wave):
-    def reason(**keys):
-        bed = joint(**LAW | {"spacing": 0.5, "dip": 0.0, "through": [0.0, 1.0]} | keys)
-        return applies("block-lattice", blocks(joint_sets=[bed])).reason
-
-    assert reason() == ""
-    assert reason(spacing=None) == "no joint set has a spacing"
-    assert reason(damping_ratio=0.1) == "the joints are damped"
-    assert reason(tension=False) == "joint set 'joint' carries no tension"
-    step = {**wave(shape="step")}
-    step.pop("period")
-    assert applies("block-lattice", blocks(waves=[step])).reason == "a wave has no period"

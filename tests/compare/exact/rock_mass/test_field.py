@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
-from jointwave.cases.incident import FreeField, free_field
-from jointwave.compare.engines import solver
+from jointwave.cases.incident import FreeField
 from jointwave.compare.exact.rock_mass.field import StackField, field_of
 from jointwave.compare.exact.rock_mass.stack import stack_of
 from jointwave.compare.exact.rock_mass.stack_waves import motion_at
@@ -21,14 +19,6 @@ def test_it_is_the_field_of_the_solution(rock_mass, wave):
     found, exact = field_of(scene)(SIDES, TIMES), motion_at(scene, stack_of(scene), SIDES, TIMES)
     assert np.abs(found.velocity - exact.velocity).max() < 1e-8 * np.abs(exact.velocity).max()
     assert np.abs(found.stress - exact.stress).max() < 1e-8 * np.abs(exact.stress).max()
-
-
-def test_without_what_joints_do_it_is_that_of_the_waves(rock_mass, joint):
-    """Joints as stiff as 1e18 Pa/m scatter Z omega / 2 K, a billionth."""
-    stiff = joint(normal_stiffness=1e18, shear_stiffness=1e18)
-    scene = rock_mass(joint_sets=[stiff])
-    found, free = field_of(scene)(SIDES, TIMES), free_field(scene)(SIDES, TIMES)
-    assert np.abs(found.velocity - free.velocity).max() < 1e-8 * np.abs(free.velocity).max()
 
 
 @pytest.mark.parametrize(
@@ -62,22 +52,3 @@ def test_sides_damping_and_strength_leave_it_as_it_is(rock_mass, joint, changes)
     found, known = (field_of(x)(SIDES, TIMES) for x in (rock_mass(**changes), rock_mass()))
     assert np.array_equal(found.velocity, known.velocity) and known.velocity.any()
     assert np.array_equal(found.stress, known.stress)
-
-
-@pytest.mark.parametrize(
-    "package, name",
-    [("dem", "dem"), ("continuum", "continuum-jointed"), ("continuum", "continuum-equivalent")],
-)
-def test_all_engines_take_it(rock_mass, joint, monkeypatch, package, name):
-    """Homogenised rock, too: its waves come from the rock in front of parallel joints."""
-    taken, result = {}, xr.Dataset()
-
-    def simulate(*arguments, **named):
-        taken["incident"] = named.get("incident", arguments[-1])
-        return result
-
-    monkeypatch.setattr(f"jointwave.{package}.simulate", simulate)
-    spaced = rock_mass(joint_sets=[joint(spacing=6.0)])
-    assert solver(name).run(spaced) is result and isinstance(taken["incident"], StackField)
-    solver(name).run(rock_mass(waves=[]))
-    assert taken["incident"] is None

@@ -49,9 +49,8 @@ def in_space(rock_mass, joint, wave):
     return scene
 
 
-@pytest.mark.parametrize("kinds", ["P", "S", "PS"])
-def test_waves_and_joint_of_a_vertical_plane_are_those_of_the_plane(in_space, wave, kinds):
-    waves = [wave(kind=k, direction=[0.28, 0.96], through=[20.0, -25.0]) for k in kinds]
+def test_waves_and_joint_of_a_vertical_plane_are_those_of_the_plane(in_space, wave):
+    waves = [wave(kind=k, direction=[0.28, 0.96], through=[20.0, -25.0]) for k in "PS"]
     plane, space = in_space(waves)
     flat, found = solve("oblique-joint", plane), solve("oblique-joint", space)
     axes = np.array([TO_RIGHT, UP])
@@ -139,13 +138,6 @@ def test_the_field_on_sides_is_that_of_the_solution(in_space, wave, changes):
     velocity, stress = field_of(scene)(np.array(scene.record.points), exact.time.values)
     assert abs(velocity.swapaxes(1, 2) - exact.velocity.values).max() < 1e-8
     assert abs(stress.swapaxes(1, 2) + exact.stress.values).max() < 1e-8 * 1e6 * 10
-
-
-def test_waves_along_the_joints_have_no_solution(in_space, wave):
-    _, scene = in_space([wave(direction=[0.28, 0.96], through=[20.0, -25.0])])
-    one = scene.waves[0].model_copy(update={"direction": [0.8, -0.6, 0.0]})
-    answer = applies("oblique-joint", scene.model_copy(update={"waves": [one]}))
-    assert answer.reason == "waves[0] travels along the joints"
 
 
 @pytest.mark.parametrize("kind", ["P", "S"])
