@@ -11,8 +11,10 @@ import pytest
 from jointwave.compare.cli import terminal
 
 COLOUR = re.compile(r"\x1b\[[0-9;]*3[0-9][0-9;]*m")
+COMMAND = [sys.executable, "-m", "jointwave"]
+SCENE = "guo-li-2002/fig-03"
 #: A point that would fail, which is said in red.
-RED = ("run", "guo-li-2002/fig-03", "--sweep", "joints.damping_ratio=-1,0.1", "--dry-run")
+RED = [*COMMAND, "run", SCENE, "--sweep", "joints.damping_ratio=-1,0.1", "--dry-run"]
 
 SLOW = """
 from time import sleep
@@ -22,7 +24,6 @@ with progress("[bold]ten parts") as advance:
         sleep(0.05)
         advance((i + 1) / 10)
 """
-
 #: The same by a clock of its own, which no load of the machine slows down.
 CLOCKED = """
 import rich.console
@@ -52,65 +53,63 @@ def on_terminal(command, **environment):
     return said.decode()
 
 
-def command(*arguments):
-    return [sys.executable, "-m", "jointwave", *arguments]
+def piped(command, **environment):
+    """Return a program that has run with pipes."""
+    told = os.environ | environment
+    return subprocess.run(command, capture_output=True, text=True, env=told)
+
+
+def python(code):
+    return [sys.executable, "-c", code]
 
 
 def test_progress_says_what_is_done_and_how_long_it_will_take():
     """Its bar is gone in the end; square brackets in a label are no markup."""
-    said = on_terminal([sys.executable, "-c", CLOCKED])
+    said = on_terminal(python(CLOCKED))
     assert "[bold]ten parts" in said and re.search(r"[3-8]0%", said)
     left = [int(s) for s in re.findall(r"0:00:0(\d)\S* \S*left", said)]
     assert left and max(left) in (1, 2) and left == sorted(left, reverse=True)
     assert "\x1b[2K" in said.rsplit("100%")[-1]
 
 
-def test_nothing_of_what_is_soon_done_reaches_a_pipe():
-    done = subprocess.run([sys.executable, "-c", SLOW], capture_output=True, text=True)
-    assert done.stdout == done.stderr == ""
-
-
-def piped(code, every):
-    """Return a program that has run with pipes, and with a progress line at an interval (s)."""
-    environment = os.environ | {"JOINTWAVE_PROGRESS": every}
-    command = [sys.executable, "-c", code]
-    return subprocess.run(command, capture_output=True, text=True, env=environment)
-
-
 def test_a_pipe_gets_a_line_now_and_then():
-    """On standard error only, with the progress so far; none remains after the work has ended."""
-    done = piped(SLOW + "sleep(0.3)", "0.1")
+    """On standard error only, with the progress so far; none remains after the work has ended, and
+    nothing reaches it of what is soon done."""
+    done = piped(python(SLOW + "sleep(0.3)"), JOINTWAVE_PROGRESS="0.1")
     assert done.stdout == ""
     lines = done.stderr.splitlines()
     said = [re.fullmatch(r"jointwave: \[bold\]ten parts: (\d+)% after \d s", x) for x in lines]
     assert said and all(said)
     shares = [int(one[1]) for one in said]
     assert shares == sorted(shares) and shares[0] < 100
+    done = piped(python(SLOW))
+    assert done.stdout == done.stderr == ""
 
 
 @pytest.mark.parametrize("close", ["sys.stderr.close()", "os.close(2)"])
 def test_a_pipe_that_nobody_reads_does_not_end_the_work(close):
-    assert piped(f"import os, sys\n{close}\n{SLOW}print('whole')", "0.1").stdout == "whole\n"
+    code = f"import os, sys\n{close}\n{SLOW}print('whole')"
+    assert piped(python(code), JOINTWAVE_PROGRESS="0.1").stdout == "whole\n"
 
 
 @pytest.mark.parametrize("every", ["often", "-1", "nan", "inf"])
 def test_an_interval_that_is_none_is_one_line(every, jointwave, monkeypatch):
     monkeypatch.setenv("JOINTWAVE_PROGRESS", every)
-    done = jointwave("run", "guo-li-2002/fig-03", "--out", "/nowhere/writable", code=2)
+    done = jointwave("run", SCENE, "--out", "/nowhere/writable", code=2)
     message = f"JOINTWAVE_PROGRESS: must be a number of seconds, not {every!r}"
     assert done.err == f"jointwave: {message}\n"
 
 
 def test_colours_are_for_a_terminal_that_wants_them():
     """Red on a terminal; none with NO_COLOR, none in a pipe."""
-    assert COLOUR.search(on_terminal(command(*RED)))
-    assert not COLOUR.search(on_terminal(command(*RED), NO_COLOR="1"))
-    done = subprocess.run(command(*RED), capture_output=True, text=True)
+    assert COLOUR.search(on_terminal(RED))
+    assert not COLOUR.search(on_terminal(RED, NO_COLOR="1"))
+    done = piped(RED)
     assert "would fail" in done.stdout and "\x1b" not in done.stdout and done.stderr == ""
 
 
 def test_a_run_shows_its_progress_on_a_terminal(tmp_path):
-    run = command("run", "guo-li-2002/fig-03", "--set", "time.duration=0.01", "--out", tmp_path)
+    run = [*COMMAND, "run", SCENE, "--set", "time.duration=0.01", "--out", tmp_path]
     assert re.search(r"4 runs.*left", on_terminal(run))
 
 
@@ -123,3 +122,60 @@ def test_a_table_that_is_too_wide_is_turned(capsys, monkeypatch):
     assert [line[0] for line in lines] == ["engine", "a number (m)", "a number (s)"]
     terminal.show_table(wide[0], 5 * wide[1])
     assert capsys.readouterr().out.startswith("engine        a number (m)  a number (s)")
+
+
+INTERRUPTED = """
+import sys
+
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == "typer":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupting())
+from jointwave.compare.cli.program import main
+main()
+"""
+
+
+def test_ctrl_c_while_the_program_is_imported_is_one_line():
+    done = piped(python(INTERRUPTED))
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "jointwave: interrupted\n"
+
+
+COLORAMA = """
+__version__ = "1.0"
+
+class Fore:
+    def __getattr__(self, name):
+        return ""
+
+Fore = Style = Fore()
+
+def init(*args, **more):
+    print("colours")
+
+reinit = deinit = init
+"""
+
+MESSAGE = """
+import sys
+from jointwave.compare.cli.program import main
+
+sys.argv = ["jointwave", "--version"]
+try:
+    main()
+except SystemExit:
+    from numba.core.errors import termcolor
+    print(termcolor().errmsg("a message"))
+"""
+
+
+def test_messages_of_numba_are_not_coloured(tmp_path):
+    """colorama would append an escape sequence to all terminal output, also JSON."""
+    (tmp_path / "colorama.py").write_text(COLORAMA)
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+    done = piped(python(MESSAGE), PYTHONPATH=path)
+    assert done.returncode == 0, done.stderr
+    assert "colours" not in done.stdout and done.stdout.endswith("a message\n")

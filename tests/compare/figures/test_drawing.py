@@ -196,16 +196,6 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     assert ink(picture.figure) > 0.01
 
 
-def test_variants_of_a_rock_mass_that_look_alike_share_a_drawing():
-    changes = (
-        {},
-        {"time": {"duration": 0.2}},
-        {"boundaries": TABLES["boundaries"] | {"top": "free"}},
-    )
-    table = drawing(*(load_tables(TABLES | one) for one in changes)).table
-    assert table.variant.unique().tolist() == ["a, b", "c"]
-
-
 def test_every_joint_and_side_is_drawn_and_is_in_the_table():
     """Five rows of 10 m less 2 m each of the three that the tunnel takes or runs along; four cross
     joints of 6 m less 2 m each of the two along its faces."""

@@ -116,15 +116,6 @@ def test_a_damped_chain_is_its_theory(row):
         np.testing.assert_allclose(loss[heard], curves[THEORY]["1/Q"][heard], rtol=0.03)
 
 
-def test_the_transfer_function_is_what_the_loss_leaves(row):
-    """|H| = exp(-a x), a = omega / (2 c Q), c by all receivers and not by two: some 1e-4."""
-    curves, way = curves_of(row)["dem"], Y[-1] - Y[0]
-    speed, loss = curves["phase speed (m/s)"], curves["1/Q"]
-    omega = 2 * np.pi * speed.index.values
-    left = np.exp(-omega * way / (2 * speed) * loss[speed.index])
-    np.testing.assert_allclose(curves["transfer function"][speed.index], left, rtol=2e-3)
-
-
 def test_a_picture_needs_a_row(row):
     (found,) = propagation("row", [row])
     assert found.name == "row-propagation"

@@ -14,6 +14,15 @@ from jointwave.compare.report.report import build
 WIDE, NARROW = (1280, 800), (390, 844)
 TALL = (1280, 1400)  # every figure fits: for its picture the page is not laid out anew
 BOXES = ".scroll, .picture, pre, nav"  # may scroll: else it is clipped
+#: Whether each box that may scroll does, and says so.
+HINTS = """() => [...document.querySelectorAll(".scroll, .picture")]
+  .filter(e => e.checkVisibility())
+  .map(e => [e.scrollWidth > e.clientWidth, getComputedStyle(e, "::before").maxHeight !== "0px"])"""
+CLIPPED = """boxes => [...document.querySelectorAll(
+    "body, h1, h2, h3, p, li, td, th, figcaption, summary, button, code, .grade")]
+  .filter(e => e.clientWidth && e.scrollWidth > e.clientWidth + 1
+    && (e === document.body || !e.closest(boxes)))
+  .map(e => e.tagName + " " + e.textContent.slice(0, 60))"""
 
 
 @pytest.fixture(scope="module")
@@ -22,26 +31,20 @@ def report(small_report):
 
 
 @pytest.fixture(scope="module")
-def alone(report, tmp_path_factory):
-    """Return the page moved to a folder without any of its files."""
-    return shutil.copy(report.file, tmp_path_factory.mktemp("alone") / "page.html")
-
-
-@pytest.fixture(scope="module")
-def show(browser, alone):
-    """Return a function that opens the page, and the list of all that the browser complains of."""
+def show(browser, report, tmp_path_factory):
+    """Return a function that opens a page, the report's moved to a folder without any of its files;
+    and the list of all that the browser complains of. Each is a process of 200 MB."""
+    alone = shutil.copy(report.file, tmp_path_factory.mktemp("alone") / "page.html")
     contexts, complaints = [], []
 
-    def opened(size=WIDE, path=alone, **options):
-        context = browser.new_context(
-            viewport=dict(zip(("width", "height"), size, strict=True)), offline=True, **options
-        )
-        contexts.append(context)
-        page = context.new_page()
+    def opened(size=WIDE, path=alone):
+        viewport = dict(zip(("width", "height"), size, strict=True))
+        contexts.append(browser.new_context(viewport=viewport, offline=True))
+        page = contexts[-1].new_page()
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda request: _refuse_outside(request.url, path, complaints))
-        page.goto(path.as_uri() if hasattr(path, "as_uri") else f"file://{path}")
+        page.goto(f"file://{path}")
         return page
 
     opened.complaints, opened.contexts = complaints, contexts
@@ -52,9 +55,7 @@ def show(browser, alone):
 
 @pytest.fixture
 def opened(show):
-    """Return the same, for pages of the test's own; each is a process of 200 MB until it is
-    closed."""
-    show.complaints.clear()
+    """Return the same, for pages of the test's own, which are closed after it."""
     before = len(show.contexts)
     yield show
     while len(show.contexts) > before:
@@ -62,28 +63,17 @@ def opened(show):
 
 
 @pytest.fixture(scope="module")
-def _page(show):
+def page(show):
+    """Return the page at its top, with every fold closed, for tests that only look."""
     return show()
 
 
-@pytest.fixture
-def page(_page):
-    """Return a page at its top, with every fold closed."""
-    fold(_page)
-    return _page
-
-
 @pytest.fixture(scope="module")
-def _whole(show):
+def whole(show):
+    """Return the page with every fold open, for tests that only look."""
     page = show(TALL)
     unfold(page)
     return page
-
-
-@pytest.fixture
-def whole(_whole):
-    """Return the page with every fold open, for tests that only look."""
-    return _whole
 
 
 def _refuse_outside(url, path, complaints):
@@ -96,21 +86,17 @@ def unfold(page):
     page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true })")
 
 
-def fold(page):
-    """Close every fold, and return to the top."""
-    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = false })")
-    page.evaluate("scrollTo(0, 0)")
-
-
 def spread(png):
     """Return the standard deviation of an image's brightness: 0 where it is blank."""
     return float(np.asarray(Image.open(io.BytesIO(png)).convert("L")).std())
 
 
-def test_the_page_opens_without_a_complaint(whole, show):
+def test_the_page_opens_without_a_complaint_or_a_blank_figure(whole, show):
     assert show.complaints == [] and whole.locator("figure img").count() > 0
     broken = "all => all.filter(i => !i.complete || !i.naturalWidth).map(i => i.alt)"
     assert whole.locator("figure img").evaluate_all(broken) == []
+    for figure in whole.locator("figure").all():
+        assert spread(figure.screenshot()) > 8, figure.get_attribute("id")
 
 
 def test_the_first_screen_answers_how_far_apart_and_at_what_cost(page, shows_picture_and_answer):
@@ -129,9 +115,9 @@ def test_the_first_screen_answers_how_far_apart_and_at_what_cost(page, shows_pic
     assert "× the time of the cheapest" in said[2]
 
 
-def test_a_page_of_ones_own_is_short_and_shows_one_variant_of_each_figure(page):
-    """At most 12,000 pixels a scene; the second variant, spectra and energies are in folds, whose
-    titles have the largest imbalance of energy."""
+def test_a_page_of_ones_own_is_short_and_shows_one_variant_of_each_figure(page, printed, title):
+    """At most 12,000 pixels and three sides and a half a scene; the second variant, spectra and
+    energies are in folds, whose titles have the largest imbalance of energy."""
     heights = page.locator("section:has(h2)").evaluate_all("all => all.map(e => e.scrollHeight)")
     assert len(heights) == 3 and sum(heights) < 12_000
     shown = page.locator("#short-pillar h3").all_inner_texts()
@@ -143,10 +129,13 @@ def test_a_page_of_ones_own_is_short_and_shows_one_variant_of_each_figure(page):
     assert "Stress along the pillar over time, ζ = 0.05" in folds
     (energy,) = (one for one in folds if one.startswith("Energy"))
     assert re.search(r"over time: imbalance at most \de-\d\d of the largest work$", energy)
+    sides, said = printed(page)
+    assert 4 <= sides <= 11 and title.replace(" ", "") in said
+    assert page.locator("details[open]").count() == 0 < page.locator("details").count()
 
 
-def test_solutions_are_in_words(whole):
-    """On the page; in its scene files and commands they have their names."""
+def test_solutions_are_in_words_and_verdicts_never_a_colour_alone(whole):
+    """On the page; in its scene files and commands solutions have their names."""
     said = whole.evaluate("""() => {
         const copy = document.querySelector("main").cloneNode(true);
         copy.querySelectorAll("pre, code").forEach(e => e.remove());
@@ -154,55 +143,21 @@ def test_solutions_are_in_words(whole):
     }""")
     assert "rigid blocks ~ jointed bar, exact" in said
     assert not re.findall(r"\bdem\b|continuum-\w+|\blattice\b|jointed-bar", said)
-
-
-HINTS = """() => [...document.querySelectorAll(".scroll, .picture")]
-  .filter(e => e.checkVisibility())
-  .map(e => [e.scrollWidth > e.clientWidth, getComputedStyle(e, "::before").maxHeight !== "0px"])"""
-
-
-@pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
-def test_what_scrolls_says_so_and_nothing_else(opened, size):
-    page = opened(size)
-    page.wait_for_timeout(200)  # for the timelines of scrolling
-    hints = page.evaluate(HINTS)
-    assert all(wider == said for wider, said in hints)
-    assert any(said for _, said in hints) == (size == NARROW)
-
-
-def test_a_verdict_is_never_a_colour_alone(whole):
     grades = whole.locator(".grade").all_inner_texts()
     assert len(grades) == 6
     assert all(re.fullmatch(r"[✓≈△▲✗?] [a-z ]+", text) for text in grades)
 
 
-def test_no_figure_is_blank_on_screen(whole):
-    for figure in whole.locator("figure").all():
-        assert spread(figure.screenshot()) > 8, figure.get_attribute("id")
-
-
-def test_the_page_prints_what_is_not_folded(page, printed, title):
-    """Folds stay closed, and titles are whole; each scene takes at most three sides and a half."""
-    sides, said = printed(page)
-    assert 4 <= sides <= 11 and title.replace(" ", "") in said
-    assert page.locator("details[open]").count() == 0 < page.locator("details").count()
-
-
-CLIPPED = """boxes => [...document.querySelectorAll(
-    "body, h1, h2, h3, p, li, td, th, figcaption, summary, button, code, .grade")]
-  .filter(e => e.clientWidth && e.scrollWidth > e.clientWidth + 1
-    && (e === document.body || !e.closest(boxes)))
-  .map(e => e.tagName + " " + e.textContent.slice(0, 60))"""
-
-
 @pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
-def test_no_text_is_clipped_or_lies_over_another(
-    opened, whole, overlaps, shows_picture_and_answer, size
-):
-    """The first narrow screen shows the verdict and the cost, too."""
-    page = whole if size == WIDE else opened(size)
-    if size == NARROW:
-        shows_picture_and_answer(page, *size)
+def test_no_text_is_clipped_or_lies_over_another(opened, overlaps, shows_picture_and_answer, size):
+    """The first narrow screen shows the verdict and the cost, too; what scrolls says so and nothing
+    else."""
+    page = opened(size)
+    page.wait_for_timeout(200)  # for the timelines of scrolling
+    hints = page.evaluate(HINTS)
+    assert all(wider == said for wider, said in hints)
+    assert any(said for _, said in hints) == (size == NARROW)
+    shows_picture_and_answer(page, *size)
     unfold(page)
     assert overlaps(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") == size[0]
@@ -210,14 +165,11 @@ def test_no_text_is_clipped_or_lies_over_another(
 
 
 def test_headings_follow_each_other_and_everything_has_a_name(whole):
-    page = whole
-    levels = page.evaluate("[...document.querySelectorAll('h1,h2,h3,h4')].map(h => +h.tagName[1])")
+    levels = whole.evaluate("[...document.querySelectorAll('h1,h2,h3,h4')].map(h => +h.tagName[1])")
     assert levels[0] == 1 and levels.count(1) == 1
     assert all(b <= a + 1 for a, b in pairwise(levels))
     unnamed = "all => all.filter(e => !(e.ariaLabel || e.alt || e.textContent.trim())).length"
-    assert page.locator("img, [role=group], a").evaluate_all(unnamed) == 0
-    ids = page.evaluate("[...document.querySelectorAll('[id]')].map(e => e.id)")
-    assert len(ids) == len(set(ids))
+    assert whole.locator("img, [role=group], a").evaluate_all(unnamed) == 0
 
 
 def test_files_stand_beside_the_page_and_it_needs_no_script(report):

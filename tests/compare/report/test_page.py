@@ -1,14 +1,23 @@
-"""The page from synthetic parts: failures, missing parts, odd characters, tables."""
+"""The page from synthetic parts: failures, missing parts, odd characters, tables; and the names of
+its scenes."""
 
 import re
 
 import pandas as pd
 import pytest
 
+from jointwave.cases.errors import SceneError
 from jointwave.compare.figures.export import Drawn
 from jointwave.compare.report.claims.claim import Claim
 from jointwave.compare.report.page import render
-from jointwave.compare.report.scenes import PAPER, SceneRequest, SolvedScene
+from jointwave.compare.report.report import build
+from jointwave.compare.report.scenes import (
+    PAPER,
+    ROCK_MASSES,
+    SceneRequest,
+    SolvedScene,
+    asked_for,
+)
 from jointwave.compare.report.sections import section
 from jointwave.compare.studies.experiment import Summary
 
@@ -28,22 +37,10 @@ def figure(tmp_path):
 @pytest.fixture
 def page(tmp_path):
     """Return a function that renders a page of nothing but the given parts, without its style."""
-    nothing = {
-        "subtitle": "About",
-        "picture": None,
-        "lead": {},
-        "summary": pd.DataFrame(),
-        "claims": [],
-        "about": None,
-        "every_scene": [],
-        "scenes": [],
-        "rock_masses": [],
-        "studies": [],
-        "contents": {},
-        "command": "jointwave report",
-        "machine": "here",
-        "versions": {},
-    }
+    nothing = dict.fromkeys(("picture", "about"))
+    nothing |= {"subtitle": "About", "command": "jointwave report", "machine": "here"}
+    nothing |= dict.fromkeys(("claims", "every_scene", "scenes", "rock_masses", "studies"), ())
+    nothing |= {"lead": {}, "contents": {}, "versions": {}, "summary": pd.DataFrame()}
 
     def make(**parts):
         text = render(nothing | parts, tmp_path)
@@ -53,7 +50,7 @@ def page(tmp_path):
 
 
 @pytest.fixture
-def scene(tmp_path, figure, pillar):
+def scene(tmp_path, pillar):
     """Return a function that gives a scene of the page with pictures, claims and texts."""
     (tmp_path / "misfits.csv").write_text("x")
     empty = pd.DataFrame()
@@ -66,12 +63,9 @@ def scene(tmp_path, figure, pillar):
         tables = dict.fromkeys(("verdicts", "distances", "readings", "runs"), empty)
         tables["reasons"] = pd.DataFrame(columns=["solution", "variants", "why"])
         tables["misfits"] = pd.DataFrame({"undamped (%)": [0.5]}, pd.Index(["a ~ b"], name="pair"))
-        shown = [one._replace(caption="What is seen.", folded=folded) for one, folded in figures]
         files = {"misfits": tmp_path / "misfits.csv"}
-        about = {}, pd.Series(), {}
-        return SolvedScene(
-            request, one, {"dem": 1.0}, None, shown, list(claims), tables, files, *about
-        )
+        shown = None, [*figures], [*claims], tables, files, {}, pd.Series(), {}
+        return SolvedScene(request, one, {"dem": 1.0}, *shown)
 
     return make
 
@@ -79,15 +73,12 @@ def scene(tmp_path, figure, pillar):
 def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
     claims = [Claim("They do.", True, "waves pass"), Claim("No.", False, "waves stop")]
     one = scene(claims=claims)
-    html = page(scenes=[one], claims=[(one.request, claim) for claim in claims])
+    whole = Claim("It is not so.", False)
+    html = page(scenes=[one], claims=[(one.request, claim) for claim in claims], about=whole)
     assert '<li class="holds"><strong>waves pass.</strong> They do.</li>' in html
     assert '<li class="fails"><strong>waves stop: does not hold.</strong> No.</li>' in html
     assert "1 of 2 claims do not hold" in html
     assert '<a href="#fig-05">fig. 5, waves stop</a>' in html
-
-
-def test_a_claim_about_the_whole_that_fails_is_red(page):
-    html = page(about=Claim("It is not so.", False))
     assert '<p class="fails">' in html and "It is not so.</p>" in html
 
 
@@ -108,28 +99,50 @@ def test_tables_have_headings_labels_and_numbers(page):
     index = pd.MultiIndex.from_tuples([("kind", "one"), ("kind", "two")], names=["kind", "pair"])
     numbers = {"a (%)": [12.3456, 1e-4], "b": [0.123456, float("nan")], "c": [7, 1_000_000]}
     html = page(summary=pd.DataFrame(numbers, index))
-    cells = re.findall(
-        r"<t[hd][^>]*>([^<]*)</t[hd]>", html[html.index("<tbody>", html.index("Every pair")) :]
-    )
+    body = html[html.index("<tbody>", html.index("Every pair")) :]
+    cells = re.findall(r"<t[hd][^>]*>([^<]*)</t[hd]>", body)
     assert cells[:9] == ["kind", "one", "12.3", "0.1235", "7", "two", "&lt; 0.001", "–", "1000000"]
 
 
 def test_a_study_shows_its_findings_failures_and_points(page, figure):
     table = pd.DataFrame({"value": [0.5]})
     found = Summary("s", "S", table, ["Off by 1 %."], ["dem: no"], [], {}, figure("s"), "A note.")
-    study = section("study", found, "jointwave study s", id="study-s")
-    html = page(studies=[study])
+    html = page(studies=[section("study", found, "jointwave study s", id="study-s")])
     assert '<section id="study-s">' in html and "Failed or missing: dem: no." in html
     assert all(x in html for x in ("Off by 1\u00a0%.", "A note.", "<td>0.5</td>"))
 
 
-def test_a_picture_whose_file_is_not_there_is_an_error(page, scene, figure):
-    gone = figure("gone")
-    gone.file("svg").unlink()
-    with pytest.raises(FileNotFoundError):
-        page(scenes=[scene([(gone, False)])])
-
-
-def test_a_folded_picture_is_closed_until_it_is_opened(page, scene, figure):
-    html = page(scenes=[scene([(figure("more"), True)])])
+def test_a_folded_picture_is_closed_and_one_without_its_file_is_an_error(page, scene, figure):
+    more = figure("more")._replace(caption="What is seen.", folded=True)
+    html = page(scenes=[scene([more])])
     assert "<details><summary>A figure</summary>" in html and "<details open" not in html
+    more.file("svg").unlink()
+    with pytest.raises(FileNotFoundError):
+        page(scenes=[scene([more])])
+
+
+def test_without_names_the_scenes_are_the_papers_figures_and_shipped_rock_masses():
+    paper, rock = asked_for(()), asked_for(ROCK_MASSES)
+    assert [one.number for one in paper] == list(range(2, 11)) and paper[0].label == "fig. 2"
+    assert [one.label for one in rock] == ["one-joint"]
+    assert not {one.name for one in rock} & {one.name for one in paper}
+
+
+def test_every_scene_has_a_name_of_its_own_that_is_fit_for_files(tmp_path):
+    """A copy of a figure of the paper is none of its figures, of which claims are made."""
+    names = ("a/my pillar", "b/my pillar", "overview", "岩", "fig-04")
+    files = [tmp_path / f"{name}.toml" for name in names]
+    for file in files:
+        file.parent.mkdir(exist_ok=True)
+        file.write_text((PAPER / "fig-04.toml").read_text())
+    found = asked_for([*map(str, files), str(files[0]), "guo-li-2002/fig-03"])
+    assert [(one.name, one.number) for one in found] == [
+        *(("my-pillar", None), ("my-pillar-2", None), ("overview-2", None)),
+        *(("scene-2", None), ("fig-04", None), ("fig-03", 3)),
+    ]
+
+
+def test_a_scene_that_is_not_there_is_said_before_anything_is_written(tmp_path):
+    with pytest.raises(SceneError, match=r"none\.toml"):
+        build(tmp_path / "page", scenes=["none.toml"])
+    assert not (tmp_path / "page").exists()

@@ -24,7 +24,8 @@ def file(tmp_path):
 
 
 def test_ratios_are_in_sentences_and_the_missing_code_says_why(file, tmp_path):
-    found = peers.summarise(peers.read(file), tmp_path)
+    read = peers.read(file)
+    found = peers.summarise(read, tmp_path)
     (sentence,) = found.sentences
     assert sentence.startswith("Code beside jointwave blocks: stepping 5.81 to 124 times, whole")
     assert found.failed == ["Gone (spheres): no apt here"]
@@ -36,11 +37,7 @@ def test_ratios_are_in_sentences_and_the_missing_code_says_why(file, tmp_path):
     assert table["own model (%)"].eq(1).all() and table["finest physics (%)"].eq(4).all()
     svg = found.figure.file("svg").read_text(encoding="utf-8")
     assert "Code: points" in svg and "Gone" not in svg
-
-
-def test_no_other_code_is_said(file):
-    found = peers.read(file)
-    assert "No other code ran" in peers.sentences(found[found["curve"] != "Code"])[0]
+    assert "No other code ran" in peers.sentences(read[read["curve"] != "Code"])[0]
 
 
 @pytest.mark.parametrize(
@@ -60,17 +57,13 @@ def test_a_file_that_is_no_such_table_is_refused(tmp_path, text, message):
     assert "is not a table of make bench-peers" in str(error.value)
 
 
-def test_without_a_name_the_table_is_looked_for_where_it_is_written(file, tmp_path, monkeypatch):
+def test_the_table_is_looked_for_where_it_is_written(file, tmp_path, monkeypatch, jointwave):
+    """One that is named and not there is a line, before anything is solved or written."""
     monkeypatch.chdir(tmp_path)
     assert peers.read(None) is None
     peers.PLACE.parent.mkdir(parents=True)
     file.rename(peers.PLACE)
     assert len(peers.read(None)) == 4
-
-
-def test_wrong_table_of_other_codes_is_one_line(tmp_path, monkeypatch, jointwave):
-    """Before anything is solved or written."""
-    monkeypatch.chdir(tmp_path)
     said = jointwave("report", "--peers", "none.csv", code=2).err
     assert said.count("\n") == 1 and "none.csv" in said and "cannot be read" in said
     assert not (tmp_path / "report").exists()

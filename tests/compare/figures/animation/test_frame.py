@@ -168,24 +168,10 @@ def test_cells_are_displaced_and_coloured_by_their_speed(squares):
     """Displacements as they can be seen: 4 % of 2 m over 1e-4 m is 800; of 1, 2, 5 times a power of
     ten at most that is 500."""
     assert settings_for(squares.scene, squares.found).scale == 500
-    body = frame_of(squares, 1000.0).bodies["dem"]
+    frame = frame_of(squares, 1000.0)
+    frame.show(1)
+    assert "t = 10 ms" in frame.clock.get_text()
+    body = frame.bodies["dem"]
     np.testing.assert_allclose(body.values, [[0, 0], [0, 2.0]])
     corners = (body.rest + body.motion[1])[body.faces][..., [0, 2]]
     np.testing.assert_allclose(corners, [SQUARE, np.add(SQUARE, [1.06, 0.08])])
-
-
-def test_the_picture_shows_the_block_that_moves_where_it_is(squares):
-    frame = frame_of(squares, 1000.0)
-    start, end = frame.image(0).astype(int), frame.image(1).astype(int)
-    (ax,) = (ax for ax in frame.figure.axes if ax.get_xlabel() == "x (m)")
-
-    def colour(image, x, y):
-        across, up = ax.transData.transform((x, y))
-        return image[len(image) - 1 - int(up), int(across), :3]
-
-    assert (colour(start, 1.5, 0.5) == colour(start, 0.5, 0.5)).all()
-    assert (colour(end, 0.5, 0.5) == colour(start, 0.5, 0.5)).all()
-    assert (colour(end, 1.5, 0.5) != colour(start, 1.5, 0.5)).any()
-    assert (colour(end, 2.04, 0.5) == colour(end, 1.5, 0.5)).all()  # beyond where it was
-    assert (colour(start, 2.04, 0.5) == 255).all()
-    assert "t = 10 ms" in frame.clock.get_text()
