@@ -9,21 +9,16 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parent.parent
 PACKAGES = "cases", "results", "numerics", "joints", "dem", "continuum", "compare", "jointwave"
 FILES = sorted(str(p.relative_to(ROOT)) for name in PACKAGES for p in (ROOT / name).rglob("*.py"))
 PRIVATE = ("numba.core", "numba._", "numba.np", "llvmlite")
 
-#: One intrinsic that flushes denormals, and what kernels of the present engines rest on. This list
-#: may only shrink.
-COMPILER_INSIDE = {
-    "numerics/denormals.py",
-}
+COMPILER_INSIDE = {"numerics/denormals.py"}  # one intrinsic that flushes denormals
 #: Settings that a library documents as such.
 SETTINGS = {"numba.config.CACHE_DIR"}
 MOST_ARGUMENTS = 12
+GONE = {"ptp", "itemset", "newbyteorder"}  # of arrays
 
 
 @cache
@@ -43,38 +38,32 @@ def imported(file):
                 yield f"{node.module}.{one.name}", one.asname or one.name
 
 
-def test_the_inside_of_the_compiler_is_imported_by_few():
-    """A file that no longer imports it leaves the list."""
-    found = {file for file in FILES if any(name.startswith(PRIVATE) for name, _ in imported(file))}
-    assert found == COMPILER_INSIDE
+def importing(*names):
+    """Return the files that import any of these modules, or a part of one."""
+    return {f for f in FILES if any(f"{name}.".startswith(names) for name, _ in imported(f))}
 
 
-def test_dolfinx_and_what_it_loads_are_imported_in_one_place():
-    """pip's libraries find one another only in that order."""
-    loaded = ("dolfinx", "petsc4py", "mpi4py.MPI")
-    found = {
-        file
-        for file in FILES
-        if any(
-            f"{name}.".startswith(tuple(f"{one}." for one in loaded)) for name, _ in imported(file)
-        )
-    }
+def test_few_files_import_what_is_delicate():
+    """A file that no longer does leaves its list. pip's libraries of dolfinx find one another only
+    where they are loaded in one order."""
+    assert importing(*PRIVATE) == COMPILER_INSIDE
+    found = importing("dolfinx.", "petsc4py.", "mpi4py.MPI.")
     assert found == {"continuum/space/fenicsx.py", "compare/runs/processes.py"}
 
 
-def test_no_array_is_asked_for_what_numpy_2_took_away():
-    gone = {"ptp", "itemset", "newbyteorder"}
+def test_functions_have_few_arguments_and_ask_arrays_for_nothing_that_numpy_2_took_away():
     for file in FILES:
         for node in nodes(file):
-            if isinstance(node, ast.Attribute) and node.attr in gone:
+            if isinstance(node, ast.FunctionDef):
+                given = node.args
+                count = len(given.posonlyargs + given.args + given.kwonlyargs)
+                assert count <= MOST_ARGUMENTS, f"{file}:{node.lineno}"
+            if isinstance(node, ast.Attribute) and node.attr in GONE:
                 assert ast.unparse(node.value) == "np", f"{file}:{node.lineno}"
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_no_attribute_of_a_library_is_replaced(package):
-    for file in FILES:
-        if file.startswith(f"{package}/"):
-            assert set(replaced(file)) <= SETTINGS, file
+def test_no_attribute_of_a_library_is_replaced():
+    assert not {(file, name) for file in FILES for name in {*replaced(file)} - SETTINGS}
 
 
 def replaced(file):
@@ -97,17 +86,6 @@ def root(node):
     while isinstance(node, ast.Attribute):
         node = node.value
     return node.id if isinstance(node, ast.Name) else None
-
-
-def test_functions_have_few_arguments():
-    found = set()
-    for file in FILES:
-        for node in nodes(file):
-            if isinstance(node, ast.FunctionDef):
-                given = node.args
-                if len(given.posonlyargs + given.args + given.kwonlyargs) > MOST_ARGUMENTS:
-                    found.add((file, node.name))
-    assert not found
 
 
 def test_no_module_imports_one_that_imports_it():

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from closed_forms.leapfrog import displacements
+from closed_forms.leapfrog import displacements, frequencies
 from closed_forms.modes import modes, of_modes
+from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.report.peers import read, summarise
@@ -41,26 +42,15 @@ def place(peers):
 
 
 @pytest.fixture
-def nowhere(peers):
-    """Return the place of a peer whose inputs are written but not run."""
-    return peers("environment").Place(["true"], {})
-
-
-@pytest.fixture
 def command(peers, tmp_path):
     """Return a function that makes a run of a Python program with three samples."""
     job = peers("job")
 
-    def made(program, name="a", twin=None):
-        folder = tmp_path / name
-        folder.mkdir()
-        return job.Job(
-            *("code", "points", "lattice", {"stride": 1}, 4, 2, 3),
-            folder=folder,
-            command=[sys.executable, "-c", program],
-            read=job.read_driven,
-            twin=twin,
-        )
+    def made(program, name="a"):
+        (folder := tmp_path / name).mkdir()
+        about = ("code", "points", "lattice", {"stride": 1}, 4, 2, 3)
+        run = [sys.executable, "-c", program] if program else ["no-such-program"]
+        return job.Job(*about, folder=folder, command=run, read=job.read_driven, twin=None)
 
     return made
 
@@ -94,48 +84,36 @@ def of_segments(p, n):
 
 
 def test_load_puts_in_the_momentum_of_the_scene(peers, pillar):
-    scene = pillar(load__cycles=3, load__period=0.0071)
-    p = peers("pillar").pillar(scene, 2)
-    half = p.load[: round(0.0071 / 2 / p.dt) + 1]  # one half wave: 2 p0 / omega
+    """That of a half wave is 2 p0 / omega. A load that stays is given for all steps; half of step 0
+    lies before t = 0."""
+    p = peers("pillar").pillar(pillar(load__cycles=3, load__period=0.0071), 2)
+    half = p.load[: round(0.0071 / 2 / p.dt) + 1]
     assert p.dt * half.sum() == pytest.approx(1e6 * 0.0071 / np.pi, rel=1e-3)
     assert p.dt * p.load.sum() == pytest.approx(0, abs=1e-9)
-    assert p.load[-1] == 0 and p.load[-2] != 0
-    assert len(p.load) <= 3 * 0.0071 / p.dt + 3
-
-
-def test_load_that_stays_is_given_for_all_steps(peers, pillar):
+    assert p.load[-1] == 0 and p.load[-2] != 0 and len(p.load) <= 3 * 0.0071 / p.dt + 3
     p = peers("pillar").pillar(pillar(load={"shape": "step", "amplitude": 1e6}), 1)
     assert len(p.load) == p.steps + 1
     np.testing.assert_allclose(p.load[1:], 1e6)
-    assert p.verlet_load[0] == pytest.approx(1e6)  # half of step 0 lies before t = 0
+    assert p.verlet_load[0] == pytest.approx(1e6)
 
 
 def test_scene_without_one_stress_at_a_joint_is_refused(peers, pillar):
-    from jointwave.cases.errors import SceneError
-
     for places in ([20.1], [10.0, 20.0], []):
         scene = pillar(record={"stress": places, "velocity": [20.0]})
         with pytest.raises(SceneError, match="one joint"):
             peers("pillar").pillar(scene, 1)
 
 
-def test_lammps_data_holds_the_chain(peers, pillar):
+def test_lammps_is_given_the_chain_and_what_the_scene_says(peers, pillar, tmp_path):
     lammps, p = peers("lammps_bonds"), peers("pillar").pillar(pillar(), 4)
     for style, last in ((lammps.POINTS, 7), (lammps.SPHERES, 9)):
         head, _, rest = lammps.data(p, style).partition(f"Atoms # {style.atoms}\n\n")
-        atoms, _, joints = (
-            rest.partition("\n\nBonds\n\n") if "\n\nBonds" in rest else (rest, "", "")
-        )
+        atoms, _, joints = rest.partition("\n\nBonds\n\n")
         x = np.array([line.split()[last - 4] for line in atoms.splitlines()[:100]], dtype=float)
         np.testing.assert_allclose(x, np.arange(100) * 0.5 + 0.25)
+        pairs = [line.split()[2:] for line in joints.splitlines()]
         assert "100 atoms\n99 bonds" in head
-        assert [line.split()[2:] for line in joints.splitlines()] == [
-            [str(i), str(i + 1)] for i in range(1, 100)
-        ]
-
-
-def test_lammps_script_says_what_the_scene_says(peers, pillar):
-    lammps, p = peers("lammps_bonds"), peers("pillar").pillar(pillar(), 4)
+        assert pairs == [[str(i), str(i + 1)] for i in range(1, 100)]
     script = lammps.script(p, lammps.POINTS)
     assert f"bond_coeff     1 {p.normal / 2!r} 0.5" in script
     assert "timestep       1.25e-05" in script and "ave/time 4 1 4" in script
@@ -143,44 +121,13 @@ def test_lammps_script_says_what_the_scene_says(peers, pillar):
     runs = [int(line.split()[1]) for line in script.splitlines() if line.startswith("run ")]
     assert sum(runs) == p.steps == 4 * 2400
     assert runs[0] == len(p.load) - 1  # setting up reads the first number, each step one more
-
-
-def test_lammps_time_is_that_of_all_its_runs(peers, tmp_path):
     (tmp_path / "output.txt").write_text("Loop time of 0.25 on 1\n...\nLoop time of 1.5 on 1\n")
     (tmp_path / "stress.txt").write_text("# a comment\n0 1.5\n4 2.5\n")
-    stress, stepping = peers("lammps_bonds").read(tmp_path)
+    stress, stepping = lammps.read(tmp_path)
     assert stress.tolist() == [1.5, 2.5] and stepping == 1.75
 
 
-def test_mesh_holds_the_pillar(peers, tmp_path):
-    import meshio
-
-    mesh = peers("mesh")
-    column = mesh.column(50.0, 0.5, 200, 2)
-    assert column.share.sum() == pytest.approx(0.25)
-    np.testing.assert_array_equal(column.nodes[column.loaded, 0], 0)
-    edges = column.nodes[column.elements][:, [1, 3, 4]] - column.nodes[column.elements][:, [0]]
-    np.testing.assert_allclose(np.linalg.det(edges), 0.25**3)  # right-handed, all alike
-    mesh.write(tmp_path / "column.msh", column)
-    found = meshio.read(tmp_path / "column.msh")
-    np.testing.assert_array_equal(found.points, column.nodes)
-    np.testing.assert_array_equal(found.cells_dict["hexahedron"], column.elements)
-
-
-@pytest.mark.parametrize(("dim", "n"), [(1, 1), (1, 4), (3, 2)])
-def test_akantu_reads_the_layers_beside_the_receiver(peers, pillar, dim, n):
-    akantu, p = peers("akantu_bar"), peers("pillar").pillar(pillar(), 1)
-    mesh = akantu.mesh_of(p, dim, n)
-    points = akantu.numbers(p, mesh, dim, n)["points"]
-    elements = np.unique(np.array(points) // (1 if dim == 1 else 8))
-    centres = mesh.nodes[mesh.elements[elements]].mean(axis=1)[:, 0]
-    assert len(elements) == 2 * (1 if dim == 1 else n**2)
-    assert set(np.round(centres, 9)) == {20 - 0.25 / n, 20 + 0.25 / n}
-
-
 def test_elements_are_stepped_below_their_critical_step(peers, pillar):
-    from closed_forms.leapfrog import frequencies
-
     for n in (1, 2, 4, 8):
         stride = peers("pillar").stride_for(pillar(), 0.5 / n, 1, 0.8)
         p = peers("pillar").pillar(pillar(), stride)
@@ -192,20 +139,12 @@ def test_elements_are_stepped_below_their_critical_step(peers, pillar):
             assert p.dt * stride / (stride - 1) * highest / 2 > 0.8  # and no smaller than needed
 
 
-def test_peer_that_is_not_installed_is_missing(peers, tmp_path):
-    environment = peers("environment")
+def test_peer_that_is_missing_is_in_the_table_with_the_reason(peers, tmp_path, monkeypatch):
+    environment, own = peers("environment"), peers("measure")
     for peer in (environment.lammps, environment.akantu):
         assert peer(tmp_path, install=False).missing == "not installed"
-
-
-def test_failed_installation_is_a_reason(peers, tmp_path, monkeypatch):
-    environment = peers("environment")
     monkeypatch.setattr(environment, "_failed", lambda *_: "No matching distribution found")
     assert environment.lammps(tmp_path).missing == "No matching distribution found"
-
-
-def test_missing_peer_is_in_the_table_and_says_why(peers, tmp_path):
-    own = peers("measure")
     rows = own.frame([own.missing_row("Akantu bar", "the homogenised bar", "no wheel here")])
     found = summarise(read(write_csv(tmp_path / "points.csv", rows)), tmp_path)
     assert found.failed == ["Akantu bar (the homogenised bar): no wheel here"]
@@ -225,29 +164,23 @@ def test_runs_take_turns_after_one_that_is_not_timed(peers, command):
 @pytest.mark.parametrize(
     ("program", "message"),
     [
-        ("open('count', 'a').write('x'); print('ERROR: no bond'); raise SystemExit(3)", "no bond"),
-        ("open('count', 'a').write('x')", "no waveform"),
+        ("print('ERROR: no bond'); raise SystemExit(3)", "no bond"),
+        ("pass", "no waveform"),
         (GOOD.replace("0 1 2", "0 1"), "not 3 finite samples"),
         (GOOD.replace("0 1 2", "0 nan 2"), "not 3 finite samples"),
+        ("", "no-such-program"),
     ],
 )
 def test_failed_run_is_listed_and_not_run_again(peers, command, program, message, tmp_path):
     measure = peers("measure")
-    job = command(program)
+    job = command(program and f"open('runs', 'a').write('x'); {program}")
     (turns,) = measure.take_turns([job], 3)
     row = measure.row(job, turns, {})
     assert row["state"] == "failed" and message in row["message"]
-    assert (job.folder / "count").read_text() == "x"
+    assert not program or (job.folder / "runs").read_text() == "x"
     assert measure.ratios(turns, turns) == {}
-    table = write_csv(tmp_path / "points.csv", peers("measure").frame([row]))
+    table = write_csv(tmp_path / "points.csv", measure.frame([row]))
     assert message in summarise(read(table), tmp_path).failed[0]
-
-
-def test_program_that_is_not_there_is_a_failure(peers, command):
-    from dataclasses import replace
-
-    turn = peers("measure").run(replace(command(""), command=["no-such-program"]))
-    assert "no-such-program" in turn.failure
 
 
 def test_ratios_are_of_runs_in_the_same_round(peers):
@@ -261,16 +194,11 @@ def test_ratios_are_of_runs_in_the_same_round(peers):
 
 @pytest.mark.parametrize("curve", ["LAMMPS bonds", "LAMMPS BPM bonds"])
 def test_chain_is_leapfrog_on_the_lattice(peers, place, pillar, tmp_path, curve):
-    scene = pillar()
-    where = place(curve.split()[0].lower())
-    module = peers("lammps_bonds")
-    lattice, misfits = solve("lattice", scene)["stress"].values[0], []
-    for job in module.jobs(scene, where, tmp_path):
+    scene, measure, misfits = pillar(), peers("measure"), []
+    lattice = solve("lattice", scene)["stress"].values[0]
+    for job in peers("lammps_bonds").jobs(scene, place(curve.split()[0].lower()), tmp_path):
         if job.curve == curve and job.settings["stride"] in (2, 4):
-            turn, p = (
-                peers("measure").run(job),
-                peers("pillar").pillar(scene, job.settings["stride"]),
-            )
+            turn, p = measure.run(job), peers("pillar").pillar(scene, job.settings["stride"])
             assert not turn.failure
             assert relative_l2(turn.stress, of_bonds(p, p.load, p.steps)) < ROUND_OFF
             misfits.append(relative_l2(turn.stress, lattice))
