@@ -9,43 +9,33 @@ from jointwave.cases import load
 
 GOOD = """\
 title = "good"
-
 [pillar]
 length = 50.0
 side = 0.5
 block = 0.5
-
 [rock]
 density = 2400.0
 p_speed = 2200.0
 s_speed = 800.0
 intact_modulus = 8.64e10
-
 [joints]
 damping_ratio = 0.02
-
 [[soft_layers]]
 y = 20.0
 spacing_stiffness = 4.375e8
-
 [load]
 shape = "sine"
 amplitude = 1.0e6
 period = 0.01
-
 [ends]
 end = "quiet"
-
 [time]
 duration = 0.002
-
 [record]
 stress = [20.0]
 velocity = [19.75, 20.25]
-
 [expect]
 "dem ~ lattice" = 2e-3
-
 [[variants]]
 name = "undamped"
 """
@@ -71,7 +61,6 @@ MISTAKES = {
     "": {
         # types
         "pillar.length = '50'": "a number",
-        "pillar.length = true": "a number",
         "rock.density = 2400-01-01": "a number",
         "title = 3": "must be a string",
         "gravity = 'down'": "must be a table",
@@ -86,14 +75,10 @@ MISTAKES = {
         "soft_layers[0].K = 1": "thickness",
         "numerics.dem.dt = 1": "step_fraction",
         "name = 'x'": "[[variants]]",
-        "no pillar": REQUIRED,
         "no pillar.length": REQUIRED,
-        "no record.stress; no record.velocity -> record": (
-            "at least one of record.stress and velocity"
-        ),
+        "no record.stress; no record.velocity -> record": "at least one of record.stress",
         # numbers: the bounds of each key stand in the reference
         "pillar.side = nan": "finite",
-        "time.duration = inf": "finite",
         "rock.density = 0.0": "greater than 0",
         "joints.damping_ratio = -0.02": "at least 0",
         "pillar.side = 1e+200": "1e30",
@@ -105,55 +90,40 @@ MISTAKES = {
         "pillar.block = 5e-11": "10,000,000 blocks",
         "soft_layers[0].y = 20.1": "multiple of 0.5",
         "soft_layers[0].y = 50.0": "from 0.5 to 49.5",
-        "soft_layers[1] = { y = 20.0, spacing_stiffness = 4e8 } -> soft_layers[1].y = 20.0": (
-            "already"
-        ),
-        "soft_layers[0].normal_stiffness = 1e9 -> soft_layers[0].spacing_stiffness = 437500000.0": (
-            "not both"
-        ),
+        "soft_layers[1] = { y = 20.0, spacing_stiffness = 4e8 } -> soft_layers[1].y": "already",
+        "soft_layers[0].normal_stiffness = 1e9 -> soft_layers[0].spacing_stiffness": "not both",
         "record.stress = [20.0, 50.1] -> record.stress = 50.1": "0 and 50 m",
         "record.stress = [-1.0] -> record.stress[0] = -1.0": "at least 0",
         "record.stress = [20.0, 20.0]": "repeat",
         "record.interval = 1.0": "time.duration = 0.002",
         "record.interval = 1e-12": "10,000,000 samples",
         # the rock
-        "rock.equivalent_modulus = 4e9; rock.equivalent_poisson = 0.4 -> rock = [": (
-            "exactly one pair"
-        ),
+        "rock.equivalent_modulus = 4e9; rock.equivalent_poisson = 0.4 -> rock = [": "one pair",
         "no rock.s_speed -> rock = ['p_speed']": "exactly one pair",
         "no rock.p_speed; no rock.s_speed -> rock": "exactly one pair",
         "rock.p_speed = 900.0": "sqrt(4/3)",
         "rock.intact_modulus = 4000000000.0": "4.374e+09",
         # the load
         "load.shape = 'square'": "'ricker', 'gabor'",
-        "ends.end = 'open'": "'matched'",
         "no load.period": "load.shape = 'sine'",
         "load.shape = 'step' -> load.period = 0.01": "no meaning",
         "load.shape = 'gabor'; load.amplitude = 1.0 -> load.cycles": REQUIRED,
         "load.rise = 0.1": "has no meaning for shape 'sine'",
         "load.direction = [0, 0, 0]": "unit vector",
         "load.direction = [0, 1]": "3 numbers",
-        "load.quantity = 'force'": "'stress', 'incident-stress', 'velocity'",
         "load.at = [0.0, 0.3]": "on the face, within 0.25 m",
         "load.at = [0.1, 0.0]; load.arm = 0.2": "takes no load.at",
         "motion.rotation = 'none'; load.at = [0.1, 0.0]": "motion.rotation = 'none'",
-        "motion.rotation = 'none'; load.arm = 0.1": "motion.rotation = 'none'",
         "ends.start = 'fixed'": "'velocity' or 'acceleration'",
         "load.quantity = 'velocity'": "ends.start = 'fixed'",
         "ends.start = 'quiet'; load.quantity = 'velocity'; load.direction = [0.6, 0.8, 0.0]": (
             "along or across the axis"
         ),
         "load.quantity = 'velocity'; load.at = [0.1, 0.0]": "for load.quantity 'velocity'",
-        "load.quantity = 'acceleration'; load.arm = 0.1": "for load.quantity 'acceleration'",
         # all joints alike
-        "soft_layers[0].contact_points = 3": "applies to all joints",
         "joints.contact_points = 3": "needs point_rule = 'midpoint' or 'gauss'",
-        "soft_layers[0].point_rule = 'gauss'": "applies to all joints",
         # gravity
-        "gravity.direction = [0, 2, 0]": "unit vector",
-        "gravity.direction = [0, -1, 0] -> gravity.static = true": (
-            "needs a fixed end ... or gravity.static = false"
-        ),
+        "gravity.direction = [0, -1, 0] -> gravity.static = true": "needs a fixed end ... or",
         "gravity.direction = [0, -1, 0]; gravity.static = false -> ends.end = 'quiet'": (
             "pulls the pillar off it ... needs a fixed"
         ),
@@ -169,22 +139,14 @@ MISTAKES = {
         "variants[0].joints.zeta = 1 -> joints.zeta = 1": "damping_ratio",
         "variants[0].joints.damping_ratio = 'none' -> joints.damping_ratio = 'none'": "a number",
         "expect.dem ~ truth = 0.002 -> expect.dem ~ truth": "'a ~ b' ... jointed-bar",
-        "expect.dem = 0.002 -> expect.dem": "'a ~ b'",
         "expect.dem ~ dem = 0.002 -> expect.dem ~ dem": "'a ~ b'",
-        "expect.dem ~ lattice = -0.002": "greater than 0",
         # the elements
         "numerics.continuum.cell = 'simplex'; numerics.continuum.order = 3": "1 or 2 ... 'simplex'",
-        "numerics.continuum.cell = 'cube'": "'simplex'",
         "numerics.continuum.mesh = 'gone.msh'": "no such file",
         "numerics.continuum.mesh = ''": "must be a file",
         "numerics.continuum.mesh = 'pipe'": "must be a file",
         "soft_layers[0].thickness = 0.5": "less than pillar.block = 0.5",
-        "no soft_layers[0].spacing_stiffness; soft_layers[0].thickness = 0.1": (
-            "needs a spacing_stiffness or normal_stiffness"
-        ),
-    },
-    "no rock.p_speed; no rock.s_speed; rock.equivalent_modulus = 4.4e9": {
-        "rock.equivalent_poisson = 0.5": "less than 0.5",
+        "no soft_layers[0].spacing_stiffness; soft_layers[0].thickness = 0.1": "needs a spacing",
     },
     SHAPED: {
         "load.shape = 'ricker' -> load.period": "is required for load.shape = 'ricker'",
@@ -195,10 +157,6 @@ MISTAKES = {
     STRONG: {
         "joints.cohesion = 1e4 -> joints.fracture_energy": "is required with joints.tensile",
         "joints.fracture_energy = 1.0; joints.tension = false": "contradicts tensile_strength",
-        "joints.fracture_energy = 1.0; joints.tension = true": "contradicts tensile_strength",
-        "no joints.damping_ratio; joints.fracture_energy = 1.0; soft_layers[0].tension = false": (
-            "contradicts tensile_strength"
-        ),
         "joints.fracture_energy = 0.5": "snaps back ... at least 0.5716 J/m2",
         "joints.fracture_energy = 1.0 -> soft_layers[0].fracture_energy = 1.0": (
             "snaps back ... at least 5.744 J/m2"
@@ -208,9 +166,7 @@ MISTAKES = {
         "soft_layers[0].fracture_energy = 10.0 -> soft_layers[0].tensile_strength": REQUIRED,
         "joints.residual_cohesion = 10000.0": "needs a cohesion",
         "joints.cohesion = 1e4; joints.residual_cohesion = 20000.0": "at most the cohesion 10000",
-        "joints.cohesion = 1e4; soft_layers[0].residual_cohesion = 20000.0": (
-            "at most the cohesion 10000 Pa"
-        ),
+        "joints.cohesion = 1e4; soft_layers[0].residual_cohesion = 20000.0": "at most the cohesion",
         "joints.friction_angle = 90.0": "less than 90",
     },
     WEAK: {
@@ -233,9 +189,7 @@ MISTAKES = {
     },
     DILATES: {
         "joints.dilation_angle = 5.0 -> joints.dilation_angle = 5": "needs a friction_angle",
-        f"{SLIPS}; joints.dilation_angle = 31.0 -> joints.dilation_angle = 31": (
-            "at most friction_angle = 30"
-        ),
+        f"{SLIPS}; joints.dilation_angle = 31.0 -> joints.dilation_angle": "at most friction_angle",
         f"{SLIPS}; joints.dynamic_friction_angle = 10.0; {WEAK}; joints.dilation_distance = 1.0; "
         "joints.dilation_angle = 15.0 -> joints.dilation_angle = 15": (
             "must be at most 10.01 ... friction at dynamic_friction_angle = 10"
@@ -279,13 +233,10 @@ MISTAKES = {
         "numerics.continuum.dim = 1": "is a bar",
         "numerics.continuum.cell = 'simplex'": "no meaning with numerics.continuum.mesh",
         "numerics.continuum.elements_per_block = 2": "no meaning",
-        "numerics.continuum.elements_across = 2": "no meaning",
         THICK: "cannot be meshed with numerics",
     },
     THICK: {
         "soft_layers[0].friction_angle = 30.0": "a layer with thickness is rock",
-        "soft_layers[0].cohesion = 0.0": "a layer with thickness is rock",
-        "soft_layers[0].shear_stiffness = 1000000000.0": "a layer with thickness is rock",
         "soft_layers[0].tension = false": "a layer with thickness is rock",
         "soft_layers[0].fracture_energy = 100.0; soft_layers[0].tensile_strength = 100000.0": (
             "a layer with thickness is rock"
@@ -297,8 +248,8 @@ EACH = [(first, one, words) for first, each in MISTAKES.items() for one, words i
 #: The same of the text of a file: (what is replaced, by what, words).
 IN_TEXT = {
     "an integer of 400 digits": ("side = 0.5", "side = 1" + "0" * 400, "pillar.side ... bits"),
-    "not TOML": ("[pillar]", "[pillar", "not valid TOML ... line 3"),
-    "the same key twice": ("side = 0.5", "side = 0.5\nside = 0.5", "not valid TOML ... line 6"),
+    "not TOML": ("[pillar]", "[pillar", "not valid TOML ... line 2"),
+    "the same key twice": ("side = 0.5", "side = 0.5\nside = 0.5", "not valid TOML ... line 5"),
     "an integer of 5000 digits": ("side = 0.5", "side = 1" + "0" * 5000, "not valid TOML"),
     "a key of many parts": ("side = 0.5", "a." * 40_000 + "b = 1", "a key has more than 64 parts"),
     "a quoted key of many parts": ("side = 0.5", '"a" . ' * 70 + "b = 1", "more than 64 parts"),
@@ -312,7 +263,6 @@ IN_TEXT = {
 
 HISTORIES = {
     "empty history": ("", "two or more numbers"),
-    "header only": ("time,stress\n", "two or more numbers"),
     "history of one row": ("0,0\n", "at least 2 samples, not 1"),
     "unsorted history": ("0,0\n2,1\n1,0\n", "line 3: time = 1 ... later than ... 2"),
     "a time twice": ("s,Pa\n0,0\n0,1\n", "line 3: time = 0 ... is repeated"),
@@ -320,7 +270,6 @@ HISTORIES = {
     "a column short": ("0;0\n1\n2;1\n", "line 2 ... 2 numbers ... not 1"),
     "an empty cell": ("0;0\n1;\n2;1\n", "line 2: value = nan or empty ... finite number"),
     "a unit of another quantity": ("t,v (mm/s)\n0,0\n1,1\n", "unit of v = 'mm/s' ... MPa"),
-    "text in a history": ("0,0\n1,high\n", "line 2: value = 'high' ... must be a number"),
     "NaN in a history": ("# blast\n0,0\n1,nan\n", "line 3: value = 'nan' ... a number"),
     "binary history": (b"\x93NUMPY\xff\x00", "neither text (line 1 ... nor a seismogram in SAC"),
     "history in Latin-1": ("Zeit (\xb5s),p\n0,0\n1,1\n".encode("latin-1"), "not UTF-8 text"),
@@ -334,7 +283,6 @@ OVERRIDES = {
     "pillar.side": "pillar.side ... must be key=value",
     "=1": "=1 ... must be key=value",
     "pillar.side=" + "[" * 5000: "pillar.side = '[[[ ... a number",
-    "pillar.side=" + "1" * 5000: "pillar.side = '1111 ... a number",
     "numerics.dem.step_fraction=1.5": "step_fraction = 1.5 ... critical step ... allow_unstable",
     "numerics.dem.step_fraction=1e-15": "step_fraction = 1e-15 ... steps of ... at most 1e+12",
 }

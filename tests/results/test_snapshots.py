@@ -7,7 +7,6 @@ import xarray as xr
 from jointwave.cases import SceneError
 from jointwave.cases.sampling import sample_times
 from jointwave.results.snapshots import (
-    in_space,
     refuse_beyond_room,
     samples_between,
     snapshots,
@@ -18,12 +17,13 @@ from jointwave.results.snapshots import (
 
 @pytest.mark.parametrize("stress", [True, False])
 def test_snapshots_come_back_from_a_result_and_from_its_file(stress, tmp_path):
-    """Two lines, one behind the other with a node each at the joint, at two instants."""
+    """Two lines along y with a node each at the joint between them, at two instants."""
     draw, cells = np.random.default_rng(3).normal, np.array([[0, 1], [2, 3]])
     points, motion = np.array([[0.0], [0.5], [0.5], [1.0]]), (draw(size=(2, 4, k)) for k in (1, 3))
     own = draw(size=(2, 2)) if stress else None
     times = np.array([0.0, 1e-3])
     found = snapshots(times, points, "line", cells, np.array([0, 1]), *motion, own)
+    assert found.points.tolist() == [[0, 0, 0], [0, 0.5, 0], [0, 0.5, 0], [0, 1, 0]]
     run = xr.Dataset(coords={"time": np.arange(3.0)}, attrs={"engine": "dem"})
     assert snapshots_of(run) is None
     held = with_snapshots(run, found)
@@ -36,14 +36,6 @@ def test_snapshots_come_back_from_a_result_and_from_its_file(stress, tmp_path):
         assert back.field_displacement.attrs["units"] == "m"
         assert back.field_velocity.attrs["units"] == "m/s"
         assert back.component.values.tolist() == ["x", "y", "z"]
-
-
-@pytest.mark.parametrize(
-    ("given", "placed"),
-    [([2.0], [0, 2, 0]), ([1.0, 2.0], [1, 2, 0]), ([1.0, 2.0, 3.0], [1, 2, 3])],
-)
-def test_vectors_of_fewer_dimensions_lie_along_y_and_then_x(given, placed):
-    assert in_space(np.array([given])).tolist() == [placed]
 
 
 @pytest.mark.parametrize(
