@@ -22,7 +22,7 @@ from jointwave.compare.engines import ENGINES, in_words, label_of
 from jointwave.compare.figures.tables import alignment_frame, reading_frame, write_comparisons
 from jointwave.compare.misfit.alignment import common_times
 from jointwave.compare.misfit.external import Curves, doubts, read_curves
-from jointwave.compare.misfit.pairs import GIVEN, Comparison
+from jointwave.compare.misfit.pairs import GIVEN, Comparison, unit_doubts
 from jointwave.compare.misfit.ranking import applicable, deciding
 from jointwave.compare.report.tables import distance_table, reason_table, run_table, verdict_table
 from jointwave.compare.report.verdict import EngineScore, engine_scores, score
@@ -95,7 +95,8 @@ def show_comparisons(
     """
     for one in found:
         ledgers = (open_ledger(r) for r in one.results.values() if "energy" in r)
-        say_warnings(f"{one.scene.name}: {line}".lstrip(": ") for line in ledgers if line)
+        lines = [*filter(None, ledgers), *unit_doubts(one)]
+        say_warnings(f"{one.scene.name}: {line}".lstrip(": ") for line in lines)
     if as_json:
         print_json([_facts(one, reads) for one in found])
         return

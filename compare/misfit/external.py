@@ -43,7 +43,7 @@ class Curves:
 
     name : its name in tables. file : the path, as given. time : [n] s, strictly increasing.
     waveforms : [n] by place, SI, compression positive. timed : whether the file or the command
-    gives the unit of its times.
+    gives the unit of its times. bare : the places whose waveform has no unit, and is taken as SI.
     """
 
     name: str
@@ -51,6 +51,7 @@ class Curves:
     time: np.ndarray
     waveforms: dict[Place, np.ndarray]
     timed: bool = True
+    bare: frozenset[Place] = frozenset()
 
 
 class Selection(NamedTuple):
@@ -167,7 +168,9 @@ def _of_file(name: str, every: list[Selection]) -> list[Curves]:
     unit = (split_unit(times[0].label)[1] if times else "") or table.time.unit
     seconds = table.time._replace(unit=unit).si(TIME)
     groups: dict[bytes, dict[Place, np.ndarray]] = {}  # by the cells that are empty
-    for place, values in (one for choice in wanted for one in _selected(table, choice)):
+    selected = [one for choice in wanted for one in _selected(table, choice)]
+    bare = frozenset(place for place, _, said in selected if not said)
+    for place, values, _ in selected:
         group = groups.setdefault(np.isnan(values).tobytes(), {})
         if place in group:
             raise ValueError(f"{place} must be given only once")
@@ -182,13 +185,13 @@ def _of_file(name: str, every: list[Selection]) -> list[Curves]:
             )
         called = f"{name}:{place}" if curves else name
         waveforms = {place: values[there] for place, values in group.items()}
-        curves.append(Curves(called, str(path), seconds[there], waveforms, bool(unit)))
+        curves.append(Curves(called, str(path), seconds[there], waveforms, bool(unit), bare))
     return curves
 
 
-def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray]]:
+def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray, str]]:
     """Return the waveforms of a file selected by one argument, [n] in SI, nan where cells are
-    empty."""
+    empty, each with the unit that is given for it, or none."""
     columns = [column for column in table.rest if choice.fits(column)]
     alone = len(columns) == 1 and (bool(choice.column) or len(table.rest) == 1)
     label, unit = split_unit(choice.label)
@@ -207,8 +210,8 @@ def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray
             place = wanted
         if place and (wanted is None or place.is_at(wanted)):
             sign = -1.0 if "-" in (column.name[:1], label[:1]) else 1.0
-            values = column._replace(unit=unit or column.unit).si(UNITS[place.quantity])
-            found.append((place, sign * values))
+            stated = column._replace(unit=unit or column.unit)
+            found.append((place, sign * stated.si(UNITS[place.quantity]), stated.unit))
     if not found:
         held = f"{choice.path} holds {_listed(table)}"
         allowed = f"must be a label, such as {EXAMPLES['pillar']}, a column or COLUMN=LABEL; {held}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, NamedTuple
@@ -10,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.engines import solver, solvers
+from jointwave.compare.engines import label_of, solver, solvers
 from jointwave.compare.misfit.alignment import AlignedCurve, distance_at, motions
 from jointwave.compare.misfit.metrics import Distance, distance, pairings
 from jointwave.compare.misfit.places import Place, shown
@@ -28,6 +29,7 @@ class Pair(NamedTuple):
 
 GIVEN = "given curves"  # external data
 A_COMPARISON = "a comparison, of `compare`"
+UNLIKELY = 100.0  # between the peaks of a curve without a unit and of a solution: another unit
 
 
 @cache
@@ -138,3 +140,18 @@ def measure_curves(
             found, pair = distance_at(time, *waves, spectral), Pair(beside.curves.name, name, GIVEN)
             rows.append(Row(pair, shown(place, result), found))
     return rows
+
+
+def unit_doubts(found: Comparison) -> Iterator[str]:
+    """Yield which external curves without a unit have another size than the first solution."""
+    first = next(iter(found.results), "")
+    for beside in found.besides:
+        pair = Pair(beside.curves.name, first, GIVEN)
+        for row in (one for one in found.rows if one.pair == pair):
+            bare = next(filter(row.place.is_at, beside.curves.bare), None)
+            ratio = row.distance.peak_ratio
+            if bare and ratio > 0 and not 1 / UNLIKELY < ratio < UNLIKELY:
+                yield (
+                    f"{beside.curves.file}: {bare} has no unit, so it is read in SI, and its peak "
+                    f"is {ratio:.1e} times that of {label_of(first)}; `{bare} [UNIT]` gives a unit"
+                )
