@@ -155,14 +155,31 @@ def _block_size(scene: RockMass) -> float | None:
     if not spacings:
         return None
     size, dim = float(scene.domain.extent.max()), scene.domain.dimension
-    if len(scene.joint_sets) == 1 and not scene.loads:
+    travel = _directions(scene)
+    if len(scene.joint_sets) == 1 and travel is not None:
         along = attitude(scene.joint_sets[0], dim)[1]
-        if all(np.abs(along @ wave.direction).max() < GRAZING for wave in scene.waves):
-            turned = any(wave.kind == "S" for wave in scene.waves)  # blocks as wide as the period
+        if all(np.abs(along @ direction).max() < GRAZING for direction, _ in travel):
+            turned = any(shears for _, shears in travel)  # blocks as wide as the period
             wide = turned and bool(scene.boundaries.sides("periodic"))
             width = float(np.ptp(scene.domain.corners @ along.T, axis=0).max()) if wide else 0.0
             return min(max(spacings[0], width), size)
     return min(spacings[dim - 1], size) if len(spacings) >= dim else size
+
+
+def _directions(scene: RockMass) -> list[tuple[np.ndarray, bool]] | None:
+    """Return the direction [d] of each wave, those that leave a whole flat side among them, and
+    whether it shears the rock; None where a load sends waves in all directions."""
+    found = [(np.array(one.direction), one.kind == "S") for one in scene.waves]
+    normals = shape_of(scene.domain).normals()
+    for load in scene.loads:
+        across = normals.get(load.side or "", np.zeros((0, 0)))
+        if len(across) != 1 or load.between is not None:
+            return None
+        moved = across[0] if load.direction is None else np.array(load.direction)
+        found.append(
+            (across[0], bool(np.abs(moved - moved @ across[0] * across[0]).max() > GRAZING))
+        )
+    return found
 
 
 def _of_parts(scene: RockMass) -> Iterator[str]:
