@@ -197,6 +197,11 @@ def against(scene: RockMass) -> str | None:
     names = [*(f"region {one.name!r}" for one in scene.regions), "this domain"]
     for name, one in zip(names, within(scene, scene.joint_sets), strict=True):
         if not any(joints.spacing for joints in one.joint_sets):
+            if scene.domain.given is not None:
+                return (
+                    "cannot divide domain.blocks, and waves pass these only where joint_sets have "
+                    "a spacing (m), by which the joints have the compliance of the rock between"
+                )
             has = "has only single joints" if one.joint_sets else "has no joints"
             return (
                 "is required (m): waves pass rigid blocks only by the joints between them, and "
