@@ -15,6 +15,7 @@ joint in intact rock crossed by a P wave along a periodic strip.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -36,8 +37,8 @@ TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the larg
 
 @dataclass(frozen=True)
 class ClosingJoint:
-    """A joint: y, m; k_ni, Pa/m; d_m, m; the compliance of the rock without it, m/Pa; prestress,
-    Pa."""
+    """A joint: y, m; k_ni, Pa/m; d_m, m, inf if linear; the compliance of the rock without it,
+    m/Pa; prestress, Pa."""
 
     y: float
     stiffness: float
@@ -49,7 +50,7 @@ class ClosingJoint:
         """Return e (m) at a stress (Pa)."""
         pressed, most = np.maximum(stress, 0.0), self.stiffness * self.maximum
         return (
-            self.maximum * pressed / (most + pressed)
+            pressed / (self.stiffness * (1 + pressed / most))
             + np.minimum(stress, 0.0) / self.stiffness
             - self.without * stress
         )
@@ -120,12 +121,19 @@ class Passed:
     ) -> None:
         self.joint, self.impedance, self.load = joint, impedance, load
 
-        def rate(t: float, stress: np.ndarray) -> np.ndarray:
-            off = 2 * (load.value(np.array([t])) - stress)
-            return off / (impedance * joint.compliance(joint.prestress + stress))
+        edges, peak = edges_of(load, end), peak_of(load, end)
+        self.stress = Trajectory(self._rate, [0.0], edges, tolerance, peak)
 
-        peak = peak_of(load, end)
-        self.stress = Trajectory(rate, [0.0], edges_of(load, end), tolerance, peak)
+    def _rate(self, t: Any, stress: np.ndarray) -> np.ndarray:
+        """Return sigma_T' (Pa/s)."""
+        off = 2 * (self.load.value(np.atleast_1d(t)) - stress)
+        return off / (self.impedance * self.joint.compliance(self.joint.prestress + stress))
+
+    def with_rate(self, times: Any) -> tuple[np.ndarray, np.ndarray]:
+        """Return sigma_T (Pa) and its rate (Pa/s) at times (s)."""
+        t = np.atleast_1d(times)
+        stress = self.stress(t)[0]
+        return stress, self._rate(t, stress)
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""

@@ -10,12 +10,20 @@ each phase starting where the previous one ends: at |s| = tau(S), at S' = 0, at 
 weakening. Where 1/K = 0, s = sigma_I while it sticks. The slip u = s / K +- S gives the transmitted
 impulse: that of sigma_I minus Z u / 2.
 
+Under a shear stress s_0 from the start, sigma_I + s_0 stands for sigma_I, and s contains s_0. A P
+wave that presses the joint by p(t) adds mu(S) p to tau; while it slides
+
+    (Z / 2) ((1 - h / K) S' + mu p' / K) = |sigma_I + s_0| - tau.
+
+A joint that loses cohesion as it first slips keeps u: its path begins with what it unloads.
+
 A joint with 1/K = 0 that dilates by w(S) radiates a wave of pressure p = (Z_n / 2) w'(S) S' to
 both sides, Z_n along the normal, and its strength rises by mu(S) p:
 
     (Z / 2 + mu w' Z_n / 2) S' = |sigma_I| - tau(S);   the impulse of p is Z_n w / 2.
 """
 
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import inf
 from typing import Any, NamedTuple
@@ -40,7 +48,8 @@ class SlipJoint(NamedTuple):
     path (m) over which it falls to the dynamic one (Pa).
 
     friction, dynamic_friction : tan(phi) of both. dilation, dilation_distance : initial tan(psi),
-    and the slip path (m) over which it falls to 0.
+    and the slip path (m) over which it falls to 0. carried : s_0, Pa. lost : cohesion that is gone
+    once it has slipped, Pa.
     """
 
     y: float
@@ -52,6 +61,8 @@ class SlipJoint(NamedTuple):
     dynamic_friction: float = 0.0
     dilation: float = 0.0
     dilation_distance: float = inf
+    carried: float = 0.0
+    lost: float = 0.0
 
     @property
     def fall(self) -> float:
@@ -60,12 +71,17 @@ class SlipJoint(NamedTuple):
 
     def left(self, path: Any) -> Any:
         """Return the strength (Pa) after a slip path (m)."""
-        return self.strength - self.fall * np.minimum(path, self.distance)
+        whole = self.strength - self.lost * np.sign(path)
+        return whole - self.fall * np.minimum(path, self.distance)
 
     def friction_at(self, path: Any) -> Any:
         """Return tan(phi) after a slip path (m)."""
-        fall = (self.friction - self.dynamic_friction) / self.distance
-        return self.friction - fall * np.minimum(path, self.distance)
+        return self.friction - self.friction_fall * np.minimum(path, self.distance)
+
+    @property
+    def friction_fall(self) -> float:
+        """Loss of tan(phi) per slip path, 1/m."""
+        return (self.friction - self.dynamic_friction) / self.distance
 
     def lift(self, path: Any) -> Any:
         """Return the opening of the joint by dilation after a slip path (m), m."""
@@ -89,11 +105,19 @@ class Phase(NamedTuple):
     state: Any
 
 
+class Pressed(NamedTuple):
+    """What a P wave adds to the pressure on a joint: `of` gives p (Pa) and p' (Pa/s) at times (s);
+    breaks : of p, s."""
+
+    of: Callable[[Any], tuple[Any, Any]] = lambda t: (0.0, 0.0)
+    breaks: Sequence[float] = ()
+
+
 class Passed:
     """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
 
     impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. normal_impedance :
-    Z_n, Pa s/m, of a joint that dilates.
+    Z_n, Pa s/m, of a joint that dilates. pressed : by a P wave.
     """
 
     def __init__(
@@ -104,10 +128,13 @@ class Passed:
         end: float,
         tolerance: float,
         normal_impedance: float = 0.0,
+        pressed: Pressed = Pressed(),  # noqa: B008, has no state
     ) -> None:
         self.joint, self.impedance, self.load, self.tolerance = joint, impedance, load, tolerance
-        self.normal_impedance = normal_impedance
-        self.peak, edges = peak_of(load, end), edges_of(load, end)
+        self.normal_impedance, self.pressed = normal_impedance, pressed.of
+        edges = edges_of(load, end)
+        edges = sorted({*edges, *(t for t in pressed.breaks if t < edges[-1])})
+        self.peak = peak_of(load, end) + abs(joint.carried)
         self.span = (edges[-1] - edges[0]) / SPANS
         self.phases: list[Phase] = []
         for start, stop in pairwise(edges):
@@ -117,17 +144,19 @@ class Passed:
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return both at times (s)."""
         stress, slide, _, _ = self._at(times)
+        stress = stress - self.joint.carried
         slip = self.joint.compliance * stress + slide
         return stress, self.load.impulse(times) - self.impedance * slip / 2
 
     def pressure(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return p (Pa) and its impulse (Pa s) at times (s)."""
+        """Return p of the joint's own dilation (Pa) and its impulse (Pa s) at times (s)."""
         _, _, path, pressure = self._at(times)
         return pressure, self.normal_impedance * self.joint.lift(path) / 2
 
     def _at(self, times: np.ndarray) -> np.ndarray:
-        """Return s, the signed slip, S and p at times [4, n]."""
+        """Return s, the signed slip, S and the dilation's p at times [4, n]."""
         found = np.zeros((4, *np.shape(times)))
+        found[0] = self.joint.carried
         # Each up to the next one, though it may end somewhat before.
         ends = [*(phase.start for phase in self.phases[1:]), inf]
         for phase, end in zip(self.phases, ends, strict=True):
@@ -137,41 +166,61 @@ class Passed:
         return found
 
     def _within(self, phase: Phase, t: np.ndarray) -> np.ndarray:
-        """Return s, the signed slip, S and p at times of a phase [4, n]."""
+        """Return s, the signed slip, S and the dilation's p at times of a phase [4, n]."""
         none = np.zeros(np.shape(t))
         if not phase.way:
-            stress = self.load.value(t) if phase.state is None else phase.state(t)[0]
+            stress = self._incident(t) if phase.state is None else phase.state(t)[0]
             return np.array([stress, none + phase.slide, none + phase.path, none])
         path, pressure = phase.state(t)[0], none
         if self.joint.dilation:
-            rate = self._rate(phase.way * self.load.value(t), path, 1.0)
+            rate = self._rate(t, phase.way, path, False)
             pressure = self.normal_impedance / 2 * self.joint.lift_rate(path) * rate
-        stress = self.joint.left(path) + self.joint.friction_at(path) * pressure
+        stress = self._strength(t, path) + self.joint.friction_at(path) * pressure
         slide = phase.slide + phase.way * (path - phase.path)
         return np.array([phase.way * stress, slide, path, pressure])
 
-    def _rate(self, incident: Any, path: Any, share: float) -> Any:
-        """Return S' under sigma_I (Pa) along the slip; share : 1 - h / K."""
+    def _incident(self, t: Any) -> Any:
+        """Return sigma_I + s_0 at a time or times (s), Pa."""
+        return self.load.value(np.asarray(t)) + self.joint.carried
+
+    def _strength(self, t: Any, path: Any) -> Any:
+        """Return tau (Pa) at times (s) after slip paths (m), without what dilation adds."""
+        return self.joint.left(path) + self.joint.friction_at(path) * self.pressed(t)[0]
+
+    def _share(self, t: Any, weakens: bool) -> Any:
+        """Return 1 - h / K at times (s)."""
         joint = self.joint
-        resistance = self.impedance * share
+        fall = joint.fall + joint.friction_fall * self.pressed(t)[0]
+        return 1 - joint.compliance * fall if weakens else 1.0
+
+    def _rate(self, t: Any, way: int, path: Any, weakens: bool) -> Any:
+        """Return S' at times (s) while it slides."""
+        joint, friction = self.joint, self.joint.friction_at(path)
+        resistance = self.impedance * self._share(t, weakens)
         if joint.dilation:
-            lifted = joint.friction_at(path) * joint.lift_rate(path)
-            resistance = resistance + lifted * self.normal_impedance
-        return 2 * (incident - joint.left(path)) / resistance
+            resistance = resistance + friction * joint.lift_rate(path) * self.normal_impedance
+        over = 2 * (way * self._incident(t) - self._strength(t, path))
+        return (
+            over - self.impedance * joint.compliance * friction * self.pressed(t)[1]
+        ) / resistance
+
+    def _weakens(self, path: float) -> bool:
+        """Return whether more slip than this path (m) takes strength away."""
+        return bool(self.joint.fall) and path < self.joint.distance * (1 - NEAR)
 
     def _next(self, start: float, stop: float) -> float:
         """Add the phase that begins at `start`, and return its end, at most `stop`."""
-        stress, path, slide = 0.0, 0.0, 0.0
+        stress, path, slide = self.joint.carried, 0.0, 0.0
         if self.phases:
             last = self.phases[-1]
             stress, slide, path, _ = self._within(last, np.array([last.end]))[:, 0].tolist()
-        incident = self._incident(start + SHORTEST)
-        limit = self.joint.left(path)
+        soon = start + SHORTEST
+        limit = float(np.squeeze(self._strength(start, path)))
         if self.joint.compliance == 0 or limit == 0:
-            stress = incident
-        way = int(np.sign(stress))
-        slides = abs(stress) >= limit - SHORT * self.peak and way * incident > limit
-        if slides:
+            stress = float(self._incident(soon))
+        way, weakens = int(np.sign(stress)), self._weakens(path)
+        slides = abs(stress) >= limit - SHORT * self.peak
+        if slides and np.squeeze(self._rate(soon, way, path, weakens)) > 0:
             phase = self._slide(start, stop, way, path, slide)
         else:
             phase = self._stick(start, stop, stress, path, slide)
@@ -180,41 +229,41 @@ class Passed:
         self.phases.append(phase)
         return phase.end
 
-    def _incident(self, t: float) -> float:
-        return float(self.load.value(np.asarray(t)))
-
     def _stick(self, start: float, stop: float, stress: float, path: float, slide: float) -> Phase:
         from scipy.optimize import brentq
 
-        joint, limit = self.joint, self.joint.left(path)
+        joint = self.joint
 
-        def excess(t: float) -> float:
-            return abs(self._incident(t)) - limit
+        def excess(t: Any) -> Any:
+            return np.squeeze(np.abs(self._incident(t)) - self._strength(t, path))
 
-        if joint.compliance == 0 or limit == 0:
+        if joint.compliance == 0 or joint.left(path) == 0:
             times = np.linspace(start + SHORTEST, stop, SPANS)
-            beyond = np.flatnonzero(np.abs(self.load.value(times)) > limit)
+            beyond = np.flatnonzero(excess(times) > 0)
             if beyond.size and beyond[0] > 0:
                 stop = brentq(excess, *times[beyond[0] - 1 : beyond[0] + 1], xtol=1e-16)
             return Phase(start, stop, 0, path, slide, None)
         relaxation = self.impedance * joint.compliance / 2
 
-        def rate(t: float, s: np.ndarray) -> float:
-            return (self._incident(t) - float(s[0])) / relaxation
+        def rate(t: float, s: np.ndarray) -> Any:
+            return (self._incident(t) - s) / relaxation
 
         def yields(t: float, s: np.ndarray) -> float:
-            return abs(float(s[0])) - limit - BEYOND * self.peak
+            limit = np.squeeze(self._strength(t, path))
+            return float(abs(s[0]) - limit - BEYOND * self.peak)
 
         found = self._solved(rate, start, stop, stress, self.peak, {yields: 1})
         return Phase(start, found.t[-1], 0, path, slide, found.sol)
 
     def _slide(self, start: float, stop: float, way: int, path: float, slide: float) -> Phase:
-        joint = self.joint
-        weakens = bool(joint.fall) and path < joint.distance * (1 - NEAR)
-        share = 1 - joint.compliance * joint.fall if weakens else 1.0
+        joint, weakens = self.joint, self._weakens(path)
+        if joint.lost and path == 0:
+            unloads = joint.lost * joint.compliance / float(np.squeeze(self._share(start, weakens)))
+            path = max(unloads, np.finfo(float).tiny)
+            slide += way * path
 
-        def rate(t: float, s: np.ndarray) -> float:
-            return self._rate(way * self._incident(t), float(s[0]), share)
+        def rate(t: float, s: np.ndarray) -> Any:
+            return np.squeeze(self._rate(t, way, s[0], weakens))
 
         def is_weak(t: float, s: np.ndarray) -> float:
             return float(s[0]) - joint.distance

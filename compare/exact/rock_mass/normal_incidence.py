@@ -1,13 +1,14 @@
-"""Scenes of a plane wave at normal incidence on one joint that is not linear: a P wave under which
-it stiffens (`joint.closing_joint`), or an S wave under which it slips (`joint.slip_phases`).
+"""Scenes of plane waves at normal incidence on one joint that is not linear: a P wave under which
+it stiffens (`joint.closing_joint`), and an S wave under which it slips (`joint.slip_phases`).
 
-Valid for one such joint without dashpots in undamped rock with sides through which waves leave. The
-normal stress on a joint that slips is that of the prestress, which has no shear along it; the joint
-may weaken with slip, and does not dilate. P: the stress along the front is nu / (1 - nu) of that
-across it.
+Valid for one such joint without dashpots in undamped rock with sides through which waves leave, and
+one wave of either kind. The prestress may shear the joint along the motion of the S wave, by less
+than its strength; the joint may weaken with slip or lose cohesion, and does not dilate. The P wave
+changes its normal stress, which stays compressive. P: the stress along the front is nu / (1 - nu)
+of that across it.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,14 +16,15 @@ import xarray as xr
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.incident import PlaneWave, WaveMotion, plane_wave
 from jointwave.cases.loads import history_of
-from jointwave.cases.partition.joints import attitude
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.law_parts import PARTS, tangent
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.joint import closing_joint, slip_phases
 from jointwave.compare.exact.joint.closing_joint import ClosingJoint
 from jointwave.compare.exact.joint.one_joint import around
-from jointwave.compare.exact.joint.slip_phases import SlipJoint
+from jointwave.compare.exact.joint.slip_phases import Pressed, SlipJoint
+from jointwave.compare.exact.joint.trajectory import peak_of
 from jointwave.compare.exact.linear import bound
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
@@ -32,18 +34,17 @@ from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 
 CLOSES = ("maximum_closure",)
 WEAKENS = next(part for part in PARTS if part.name == "weakening")
-SLIPS = ("friction_angle", "cohesion", *WEAKENS.keys)
+SLIPS = ("friction_angle", "cohesion", "residual_cohesion", *WEAKENS.keys)
 BESIDE = 2e-9  # m
 ROUND_OFF = 1e-11  # of the largest of a waveform
 SHEARED = 1e-9  # of the prestress: less shear along a joint is none
+LINEAR = np.inf  # m, the largest closure of a joint without one
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether a P wave meets one joint that stiffens, or an S wave one that slips, at normal
-    incidence."""
-    sets = scene.joint_sets
-    slips = all(wave.kind == "S" for wave in scene.waves)
-    keys = (*SLIPS, *CLOSES, "tension") if slips else CLOSES
+    """Return whether waves meet one joint at normal incidence that stiffens or slips under them."""
+    sets, waves = scene.joint_sets, {one.kind: one for one in scene.waves}
+    keys = (*SLIPS, *CLOSES, "tension") if "S" in waves else CLOSES
     if all(getattr(one, key) is None for one in sets for key in (*CLOSES, *SLIPS[:2])):
         return Answer("no joint has closure or can slip: see oblique-joint")
     linear = [one.model_copy(update=dict.fromkeys(keys)) for one in sets]
@@ -52,97 +53,167 @@ def applies(scene: RockMass) -> Answer:
         return answer
     if any(one.damping_ratio for one in sets):
         return Answer("the joint is damped")
-    wave, normal = scene.waves[0], stack_of(scene).normal
-    if len(scene.waves) > 1 or not along(np.array(wave.direction), normal):
-        return Answer("the wave is not one at normal incidence")
-    return _slips_as_known(scene, sets[0]) if slips else answer
+    normal = stack_of(scene).normal
+    if not all(along(np.array(one.direction), normal) for one in scene.waves):
+        return Answer("a wave is not one at normal incidence")
+    if len(waves) < len(scene.waves):
+        return Answer("several waves are of one kind")
+    ways = {np.sign(normal @ one.direction) for one in scene.waves}
+    if len(ways) > 1:
+        return Answer("waves meet the joint from both sides")
+    return _slips_as_known(scene, sets[0]) if "S" in waves else answer
 
 
 def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:
     """Return whether the slip of a joint under an S wave is that of `slip_phases`."""
     if one.friction_angle is None and one.cohesion is None:
         return Answer("the joint cannot slip under an S wave: see oblique-joint")
-    if one.residual_cohesion is not None:
-        return Answer("the joint loses cohesion")
-    n = attitude(one, scene.domain.dimension)[0]
-    carried = scene.prestress.tensor @ n if scene.prestress else 0 * n
-    normal = float(n @ carried)
-    if np.abs(carried - normal * n).max() > SHEARED * np.abs(carried).max():
-        return Answer("the prestress shears the joint")
-    if normal < 0 or (normal == 0 and one.tension is False):
-        return Answer("no normal stress closes the joint")
-    joint = slip_joint(one, normal)
-    if joint.fall * joint.compliance >= 1:
+    wave = next(plane_wave(scene, each) for each in scene.waves if each.kind == "S")
+    normal, shear, across = carried(scene, wave)
+    if across > SHEARED * (abs(normal) + abs(shear)):
+        return Answer("the prestress shears the joint across the motion of the S wave")
+    least = normal - sum(
+        peak_of(NormalWave.of(scene, each).load, scene.time.duration)
+        for each in scene.waves
+        if each.kind == "P"
+    )
+    if least < 0 or (least == 0 and one.tension is False):
+        return Answer("no normal stress closes the joint at all times")
+    joint = slip_joint(one, normal, shear)
+    if joint.left(0.0) <= abs(shear) and shear:
+        return Answer("the prestress exceeds the joint's strength")
+    most = joint.fall + joint.friction_fall * (normal - least)
+    if most * joint.compliance >= 1:
         return Answer("friction falls with slip faster than the joint unloads")
     return Answer()
 
 
+def carried(scene: RockMass, wave: PlaneWave) -> tuple[float, float, float]:
+    """Return what the joint carries before an S wave, Pa: normal stress, shear along the motion of
+    the wave, and the rest of the shear."""
+    if scene.prestress is None:
+        return 0.0, 0.0, 0.0
+    n, g = wave.direction, wave.polarisation
+    traction = scene.prestress.tensor @ n
+    normal, shear = float(n @ traction), float(g @ traction)
+    return normal, shear, float(np.abs(traction - normal * n - shear * g).max())
+
+
 def solve(scene: RockMass) -> xr.Dataset:
-    """Return the receivers' records of the wave at the joint."""
+    """Return the receivers' records of the waves at the joint."""
     return stack_waves.solve(scene, SOLVER.name, _motion)
 
 
-def slip_joint(one: JointSet, normal: float, y: float = 0.0) -> SlipJoint:
-    """Return a joint at y (m) under a normal stress (Pa), as `slip_phases` has it."""
+def slip_joint(one: JointSet, normal: float, shear: float = 0.0, y: float = 0.0) -> SlipJoint:
+    """Return a joint at y (m) under a normal and a shear stress (Pa), as `slip_phases` has it."""
     cohesion, friction = one.cohesion or 0.0, tangent(one.friction_angle)
     assert one.shear_stiffness
     distance, left = WEAKENS.parameters(one)
     strength, dynamic = (cohesion + share * normal for share in (friction, left))
-    return SlipJoint(y, 1 / one.shear_stiffness, strength, dynamic, distance)
+    lost = 0.0 if one.residual_cohesion is None else max(cohesion - one.residual_cohesion, 0.0)
+    return SlipJoint(
+        y, 1 / one.shear_stiffness, strength, dynamic, distance,
+        friction=friction, dynamic_friction=left, carried=shear, lost=lost,
+    )  # fmt: skip
+
+
+class NormalWave(NamedTuple):
+    """A wave of a scene, the impedance of rock for it, Pa s/m, where along it the joint lies, m,
+    and the stress that it brings."""
+
+    wave: PlaneWave
+    impedance: float
+    y: float
+    load: LoadHistory
+
+    @classmethod
+    def of(cls, scene: RockMass, one: Wave) -> "NormalWave":
+        """Return a wave of a scene with one joint."""
+        wave, stack = plane_wave(scene, one), stack_of(scene)
+        impedance = float(wave.rock.density) * wave.speed
+        y = float(wave.direction @ (stack.offsets[0] * stack.normal - wave.through))
+        over = 1.0 if one.quantity == "stress" else impedance
+        return cls(wave, impedance, y, history_of(one, one.amplitude * over))
+
+    @property
+    def arrival(self) -> float:
+        """When it meets the joint, s."""
+        return self.y / self.wave.speed
 
 
 class NormalField:
-    """The wave of a scene with reflection and transmission: `cases.incident.IncidentField`.
+    """The waves of a scene with reflection and transmission: `cases.incident.IncidentField`.
 
     which : 1 for the twin, whose tolerances are larger.
     """
 
     def __init__(self, scene: RockMass, which: int = 0) -> None:
-        wave, stack = scene.waves[0], stack_of(scene)
-        self.wave = plane_wave(scene, wave)
-        self.impedance = float(self.wave.rock.density) * self.wave.speed
-        self.y = float(self.wave.direction @ (stack.offsets[0] * stack.normal - self.wave.through))
-        over = 1.0 if wave.quantity == "stress" else self.impedance
-        self.load = history_of(wave, wave.amplitude * over)
-        extent = np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0))
-        end = scene.time.duration + float(extent / self.wave.speed)
-        self.passed = passed_of(scene, self.wave, self.y, self.load, end, which)
-
-    def waves(self, points: np.ndarray, times: np.ndarray) -> np.ndarray:
-        """Return the waves to and fro [2, stress and impulse, m, n]; Pa, against the motion of the
-        first."""
-        y, joint = (np.asarray(points) - self.wave.through) @ self.wave.direction, self.y
-        # On one side of the joint, not on it, where velocity and stress along it have no one value.
-        y = joint + np.copysign(np.maximum(np.abs(y - joint), BESIDE), y - joint)
-        return around(joint, self.wave.speed, self.passed, self.load, np.asarray(times), y)
+        extent = float(np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0)))
+        self.parts: list[tuple[NormalWave, Any]] = []
+        pressed = Pressed()
+        for one in sorted(scene.waves, key=lambda one: one.kind):  # P before S
+            met = NormalWave.of(scene, one)
+            end = scene.time.duration + extent / met.wave.speed
+            if one.kind == "P":
+                passed: Any = _closing(scene, met, end, which)
+                pressed = _pressed(passed, met)
+            else:
+                passed = _slipping(scene, met, end, which, pressed)
+            self.parts.append((met, passed))
 
     def motion(self, points: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return displacement and velocity [m, d, n], and stress [m, components, n] in Pa, tension
         positive."""
-        there, back = self.waves(points, times)
-        velocity, moved = (
-            (there - back)[:, :, None] / self.impedance * self.wave.polarisation[:, None]
-        )
-        unit = self.wave.unit_stress() / self.impedance
-        return moved, velocity, (there[0] + back[0])[:, None] * unit[:, None]
+        found = [_around(*part, np.asarray(points), np.asarray(times)) for part in self.parts]
+        return tuple(np.sum(each, axis=0) for each in zip(*found, strict=True))
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         return WaveMotion(*self.motion(points, times)[1:])
 
 
-def passed_of(
-    scene: RockMass, wave: PlaneWave, y: float, load: LoadHistory, end: float, which: int
-) -> Any:
-    """Return what passes the joint of a scene at y (m) along a wave, up to `end` (s)."""
-    one, n = scene.joint_sets[0], wave.direction
-    impedance = float(wave.rock.density) * wave.speed
+def _around(
+    met: NormalWave, passed: Any, points: np.ndarray, times: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """Return the motion of one wave, as `NormalField.motion` does."""
+    y, joint, wave = (points - met.wave.through) @ met.wave.direction, met.y, met.wave
+    # On one side of the joint, not on it, where velocity and stress along it have no one value.
+    y = joint + np.copysign(np.maximum(np.abs(y - joint), BESIDE), y - joint)
+    there, back = around(joint, wave.speed, passed, met.load, times, y)
+    velocity, moved = (there - back)[:, :, None] / met.impedance * wave.polarisation[:, None]
+    unit = wave.unit_stress() / met.impedance
+    return moved, velocity, (there[0] + back[0])[:, None] * unit[:, None]
+
+
+def _closing(scene: RockMass, met: NormalWave, end: float, which: int) -> closing_joint.Passed:
+    """Return what of a P wave passes the joint of a scene, up to `end` (s)."""
+    one, n = scene.joint_sets[0], met.wave.direction
+    assert one.normal_stiffness
     normal = float(n @ scene.prestress.tensor @ n) if scene.prestress else 0.0
-    if scene.waves[0].kind == "S":
-        slides, tolerance = slip_joint(one, normal, y), slip_phases.TOLERANCES[which]
-        return slip_phases.Passed(slides, impedance, load, end, tolerance)
-    assert one.normal_stiffness and one.maximum_closure
-    closes = ClosingJoint(y, one.normal_stiffness, one.maximum_closure, prestress=normal)
-    return closing_joint.Passed(closes, impedance, load, end, closing_joint.TOLERANCES[which])
+    most = one.maximum_closure or LINEAR
+    closes = ClosingJoint(met.y, one.normal_stiffness, most, prestress=normal)
+    tolerance = closing_joint.TOLERANCES[which]
+    return closing_joint.Passed(closes, met.impedance, met.load, end, tolerance)
+
+
+def _pressed(passed: closing_joint.Passed, met: NormalWave) -> Pressed:
+    """Return what a P wave adds to the pressure on the joint, over the time of the scene."""
+    breaks = [t + met.arrival for t in met.load.breaks]
+    return Pressed(lambda t: passed.with_rate(np.asarray(t) - met.arrival), breaks)
+
+
+def _slipping(
+    scene: RockMass, met: NormalWave, end: float, which: int, pressed: Pressed
+) -> slip_phases.Passed:
+    """Return what of an S wave passes the joint of a scene, up to `end` (s)."""
+    normal, shear, _ = carried(scene, met.wave)
+    joint = slip_joint(scene.joint_sets[0], normal, shear, met.y)
+    own = Pressed(
+        lambda t: pressed.of(np.asarray(t) + met.arrival), [t - met.arrival for t in pressed.breaks]
+    )
+    tolerance = slip_phases.TOLERANCES[which]
+    return slip_phases.Passed(
+        joint, met.impedance, met.load, end, tolerance, pressed=own if pressed.breaks else pressed
+    )
 
 
 def _motion(
