@@ -187,22 +187,20 @@ class Passed:
         """Return tau (Pa) at times (s) after slip paths (m), without what dilation adds."""
         return self.joint.left(path) + self.joint.friction_at(path) * self.pressed(t)[0]
 
-    def _share(self, t: Any, weakens: bool) -> Any:
-        """Return 1 - h / K at times (s)."""
-        joint = self.joint
-        fall = joint.fall + joint.friction_fall * self.pressed(t)[0]
-        return 1 - joint.compliance * fall if weakens else 1.0
+    def _share(self, pressed: Any, weakens: bool) -> Any:
+        """Return 1 - h / K under p (Pa)."""
+        fall = self.joint.fall + self.joint.friction_fall * pressed
+        return 1 - self.joint.compliance * fall if weakens else 1.0
 
     def _rate(self, t: Any, way: int, path: Any, weakens: bool) -> Any:
         """Return S' at times (s) while it slides."""
-        joint, friction = self.joint, self.joint.friction_at(path)
-        resistance = self.impedance * self._share(t, weakens)
+        joint, (pressed, rises) = self.joint, self.pressed(t)
+        friction = joint.friction_at(path)
+        resistance = self.impedance * self._share(pressed, weakens)
         if joint.dilation:
             resistance = resistance + friction * joint.lift_rate(path) * self.normal_impedance
-        over = 2 * (way * self._incident(t) - self._strength(t, path))
-        return (
-            over - self.impedance * joint.compliance * friction * self.pressed(t)[1]
-        ) / resistance
+        over = 2 * (way * self._incident(t) - joint.left(path) - friction * pressed)
+        return (over - self.impedance * joint.compliance * friction * rises) / resistance
 
     def _weakens(self, path: float) -> bool:
         """Return whether more slip than this path (m) takes strength away."""
@@ -258,8 +256,8 @@ class Passed:
     def _slide(self, start: float, stop: float, way: int, path: float, slide: float) -> Phase:
         joint, weakens = self.joint, self._weakens(path)
         if joint.lost and path == 0:
-            unloads = joint.lost * joint.compliance / float(np.squeeze(self._share(start, weakens)))
-            path = max(unloads, np.finfo(float).tiny)
+            share = float(np.squeeze(self._share(self.pressed(start)[0], weakens)))
+            path = max(joint.lost * joint.compliance / share, np.finfo(float).tiny)
             slide += way * path
 
         def rate(t: float, s: np.ndarray) -> Any:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from closed_forms.slipping_joint import slipping_joint
+from jointwave.cases.incident import plane_wave
 from jointwave.cases.sampling import sample_times
-from jointwave.compare.engines import solve
+from jointwave.compare.engines import applies, solve
 from jointwave.compare.exact.rock_mass.field import field_of
 
 CLOSES = {"maximum_closure": 1e-4}
@@ -44,6 +45,71 @@ def test_a_joint_that_slips_moves_as_it_does_marched_in_time(straight):
     assert np.abs(found.slip).max() > 1e-4
     size = np.abs(marched).max()
     assert np.abs(found.velocity.values - marched).max() <= 5e-3 * size
+
+
+def marched_in_time(scene, times):
+    """Return normal stress, shear stress and slip of the one joint of a scene over time, Pa and m,
+    by Euler's steps of 1e-6 s: in each the jumps grow by what the waves do not pass, and the shear
+    stress beyond the strength slips."""
+    law, fine = scene.joint_sets[0], np.arange(0.0, times[-1] + 1e-6, 1e-6)
+    by_kind, place = {}, np.array(scene.record.joints)
+    for one in scene.waves:
+        wave = plane_wave(scene, one)
+        Z = float(wave.rock.density) * wave.speed
+        by_kind[one.kind] = wave, Z, Z * wave.pulse.value(fine - wave.lateness(place)[0])
+    (p_wave, Z_p, pressing), (s_wave, Z_s, shearing) = by_kind["P"], by_kind["S"]
+    traction = scene.prestress.tensor @ p_wave.direction
+    normal, shear = p_wave.direction @ traction, s_wave.polarisation @ traction
+    static, dynamic = np.tan(np.radians([law.friction_angle, law.dynamic_friction_angle or 0.0]))
+    p, carried, slip, path, found = 0.0, shear, 0.0, 0.0, []
+    for incident_p, incident_s in zip(pressing, shearing, strict=True):
+        found.append((normal + p, carried, slip))
+        p += 1e-6 * 2 * law.normal_stiffness / Z_p * (incident_p - p)
+        moves = 1e-6 * 2 / Z_s * (incident_s + shear - carried)
+        carried, slip = carried + law.shear_stiffness * moves, slip + moves
+        friction, cohesion = static, law.cohesion or 0.0
+        if law.weakening_distance:
+            friction -= (static - dynamic) * min(path / law.weakening_distance, 1.0)
+        if path and law.residual_cohesion is not None:
+            cohesion = law.residual_cohesion
+        strength = cohesion + friction * (normal + p)
+        if abs(carried) > strength:
+            if law.residual_cohesion is not None:
+                strength += law.residual_cohesion - cohesion
+            path += (abs(carried) - strength) / law.shear_stiffness
+            carried = np.copysign(strength, carried)
+    return np.array([np.interp(times, fine, one) for one in np.transpose(found)])
+
+
+WEAKENS = {"friction_angle": 30.0, "dynamic_friction_angle": 18.0, "weakening_distance": 5e-4}
+LOSES = {"friction_angle": 20.0, "cohesion": 3e5, "residual_cohesion": 5e4}
+
+
+@pytest.mark.parametrize("up", [1.0, -1.0])
+@pytest.mark.parametrize(("law", "sheared"), [(WEAKENS, 1.5e6), (LOSES, -0.4e6), (SLIPS, 0.0)])
+def test_a_sheared_joint_slips_under_both_waves_as_it_does_marched_in_time(
+    rock_mass, joint, wave, law, sheared, up
+):
+    """In a step of 1e-6 s a wave of 1 MPa and 200 Hz changes by omega dt = 1.3e-3 of itself; what
+    breaks at once, cohesion of .25 MPa, does so a step late: in one sample of 600."""
+    n = np.array([-np.sin(np.radians(25.0)), np.cos(np.radians(25.0))])
+    t = np.array([n[1], -n[0]])
+    stress = 3e6 * np.eye(2) + sheared * (np.outer(n, t) + np.outer(t, n))
+    both = {"direction": (up * n).tolist(), "through": [16.0, 15.0 - 21.0 * up]}
+    scene = rock_mass(
+        joint_sets=[joint(**law)],
+        waves=[wave(**both, kind="S"), wave(**both, kind="P", amplitude=-8e5)],
+        prestress=dict(zip(("xx", "yy", "xy"), stress[[0, 1, 0], [0, 1, 1]].tolist(), strict=True)),
+    )
+    assert applies("normal-incidence", scene)
+    found = solve("normal-incidence", scene)
+    normal, shear, slip = marched_in_time(scene, found.time.values)
+    traction, sign = found.traction.values[0], np.sign(found.slip.values[0] @ slip)
+    assert np.abs(normal - traction[:, 0]).max() <= 2e-3 * 8e5
+    off = np.abs(np.abs(shear) - np.abs(traction[:, 1]))
+    assert np.sort(off)[-2] <= 5e-3 * 1e6
+    assert np.abs(slip).max() > 1e-4
+    assert np.abs(found.slip.values[0] - sign * slip).max() <= 5e-3 * np.abs(slip).max()
 
 
 def test_space_turned_about_the_normal_is_the_plane(straight, rock_mass, joint, wave):
