@@ -50,7 +50,6 @@ def applies(scene: Scene) -> Answer:
         HELD,
         (not ends <= {"quiet", "matched"}, "an end reflects"),
         (np.count_nonzero(slips) != 1, "not exactly one joint can slip"),
-        (p.residual_cohesion is not None, "slip weakens the joint"),
         *_against_rate(scene, p),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
@@ -130,7 +129,9 @@ def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     friction = 0.0 if p.friction is None else float(p.friction[j])
     strength = max(cohesion + friction * normal, 0.0)
     found = SlipJoint(float(p.joint_y[j]), float(_excess_compliance(p)[j]), strength)
-    found = found._replace(friction=friction, dynamic_friction=friction)
+    left = cohesion if p.residual_cohesion is None else float(p.residual_cohesion[j])
+    lost = max(cohesion - left, 0.0)
+    found = found._replace(friction=friction, dynamic_friction=friction, lost=lost)
     if normal <= 0:
         return found
     if p.dilation is not None and p.dilation_distance is not None:
