@@ -172,8 +172,6 @@ NO = {
         (SHEAR | {"ends": {}}, "an end reflects"),
         (SHEAR, ONE_SLIPS),
         (SHEAR | {"joints": {"cohesion": 1e5}}, ONE_SLIPS),
-        (SHEAR | {"soft_layers": [SLIPS[0] | {"residual_cohesion": 0.0}]},
-         "slip weakens the joint"),
         (PRESSED | {"soft_layers": [RATED | {"cohesion": 1e4}]},
          "the rate-and-state joint has cohesion"),
         (SHEAR | {"soft_layers": [RATED]}, "the rate-and-state joint has no normal stress"),

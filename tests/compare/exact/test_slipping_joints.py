@@ -63,6 +63,15 @@ def test_any_strength_is_integrated_to_the_end(load, tau, relaxation):
     assert np.abs(s[1:] - seen[1:]).max() < (0.06 if relaxation else 1e-10)
 
 
+def test_a_joint_without_compliance_carries_what_is_left_of_its_cohesion_once_it_has_slipped():
+    load, times = Sine(1.0, 0.01, 2), np.linspace(0.0, 0.03, 3001)
+    s, _ = transmitted(SlipJoint(0.0, 0.0, 0.7, 0.7, lost=0.4), load, times)
+    incident = load.value(times)
+    first = np.flatnonzero(np.abs(incident) > 0.7)[0]
+    assert s[:first] == pytest.approx(incident[:first], abs=1e-12)
+    assert s[first + 1 :] == pytest.approx(np.clip(incident[first + 1 :], -0.3, 0.3), abs=1e-10)
+
+
 @pytest.mark.parametrize("load", [Sine(1.0, 0.01, 2), Ricker(1.0, 0.01), Step(1.0)])
 def test_an_unlimited_joint_is_the_linear_one(load, misfit):
     """The same integral by other nodes: round-off, a step's half value at t = 0 left out."""
