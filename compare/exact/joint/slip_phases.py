@@ -38,6 +38,7 @@ TOLERANCES = 3e-14, 1e-11  # of the integration, and of its twin
 #: phase ends with a step.
 SPANS = 1999
 NEAR = 1e-12  # of the weakening distance: less of it is none
+TINY = 1e-300  # m, the path of a joint that has just slipped
 #: Of the peak: by how much s may miss the strength where it starts to slip, and exceed it where it
 #: sticks, so that a phase that begins at the strength does not end there.
 SHORT, BEYOND = 1e-11, 1e-14
@@ -257,7 +258,7 @@ class Passed:
         joint, weakens = self.joint, self._weakens(path)
         if joint.lost and path == 0:
             share = float(np.squeeze(self._share(self.pressed(start)[0], weakens)))
-            path = max(joint.lost * joint.compliance / share, np.finfo(float).tiny)
+            path = joint.lost * joint.compliance / share or TINY
             slide += way * path
 
         def rate(t: float, s: np.ndarray) -> Any:
