@@ -9,7 +9,7 @@ import numpy as np
 from jointwave.cases.checks.rock_mass import GRAZING
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.locate import sides_at
-from jointwave.cases.incident import plane_wave
+from jointwave.cases.incident import across, plane_wave
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import attitude, rocks_of
@@ -155,31 +155,46 @@ def _block_size(scene: RockMass) -> float | None:
     if not spacings:
         return None
     size, dim = float(scene.domain.extent.max()), scene.domain.dimension
-    travel = _directions(scene)
-    if len(scene.joint_sets) == 1 and travel is not None:
+    waves = _plane_waves(scene)
+    if len(scene.joint_sets) == 1 and waves is not None:
         along = attitude(scene.joint_sets[0], dim)[1]
-        if all(np.abs(along @ direction).max() < GRAZING for direction, _ in travel):
-            turned = any(shears for _, shears in travel)  # blocks as wide as the period
+        if all(np.abs(along @ direction).max() < GRAZING for direction, _ in waves.values()):
+            # Under shear, blocks as wide as the period turn.
+            turned = any(np.abs(along @ motion).max() > GRAZING for _, motion in waves.values())
             wide = turned and bool(scene.boundaries.sides("periodic"))
             width = float(np.ptp(scene.domain.corners @ along.T, axis=0).max()) if wide else 0.0
             return min(max(spacings[0], width), size)
     return min(spacings[dim - 1], size) if len(spacings) >= dim else size
 
 
-def _directions(scene: RockMass) -> list[tuple[np.ndarray, bool]] | None:
-    """Return the direction [d] of each wave, those that leave a whole flat side among them, and
-    whether it shears the rock; None where a load sends waves in all directions."""
-    found = [(np.array(one.direction), one.kind == "S") for one in scene.waves]
+def _plane_waves(scene: RockMass) -> dict[str, tuple[np.ndarray, np.ndarray]] | None:
+    """Return the direction and the motion [d] of each plane wave by its table, of those too that
+    leave a whole flat side; None where a load sends waves in all directions."""
+    found = {}
+    for key, wave in scene.entries("waves"):
+        n = np.array(wave.direction)
+        found[key] = n, n if wave.kind == "P" else across(n, wave)
     normals = shape_of(scene.domain).normals()
-    for load in scene.loads:
-        across = normals.get(load.side or "", np.zeros((0, 0)))
-        if len(across) != 1 or load.between is not None:
+    for key, load in scene.entries("loads"):
+        inward = normals.get(load.side or "", np.zeros((0, 0)))
+        if len(inward) != 1 or load.between is not None:
             return None
-        moved = across[0] if load.direction is None else np.array(load.direction)
-        found.append(
-            (across[0], bool(np.abs(moved - moved @ across[0] * across[0]).max() > GRAZING))
-        )
+        n = inward[0]
+        found[key] = n, n if load.direction is None else np.array(load.direction)
     return found
+
+
+def _of_rollers(scene: RockMass) -> Iterator[str]:
+    """Say which waves rollers along their way hold back, since they move rock into these."""
+    normals = shape_of(scene.domain).normals()
+    for side in scene.boundaries.sides("roller"):
+        for key, (direction, motion) in (_plane_waves(scene) or {}).items():
+            n = normals[side]
+            if np.abs(n @ direction).max() < GRAZING < np.abs(n @ motion).max():
+                yield (
+                    f"boundaries.{side} = 'roller' holds the rock that {key} moves towards it, all "
+                    "along its way: periodic sides move with the wave"
+                )
 
 
 def _of_parts(scene: RockMass) -> Iterator[str]:
@@ -247,6 +262,7 @@ RULES = (
     _of_places,
     _of_directions,
     _of_wavelength,
+    _of_rollers,
     _of_parts,
     _of_points_on_joints,
     _of_starts,
