@@ -59,6 +59,30 @@ def test_a_wave_across_one_set_is_measured_by_its_spacing(mass):
     assert len(warnings(mass(joint_sets=[fine], waves__0__direction=[0.6, 0.8]))) == 1
 
 
+PERIODIC = {"left": "periodic", "right": "periodic", "bottom": "fixed"}
+SHAKEN = {"kind": "base", "side": "bottom", "quantity": "velocity", "shape": "ricker"}
+SHAKEN |= {"amplitude": 0.1, "period": 0.005, "direction": [0.0, 1.0]}
+
+
+def test_what_leaves_a_whole_side_is_measured_as_a_wave_is(mass):
+    """Up through beds of .5 m; from a part of the side it goes in all directions."""
+    beds = {"waves": [], "joint_sets": [SETS[0] | {"spacing": 0.5, "through": [0.0, 0.1]}]}
+    on_top = PRESSURE | {"side": "top", "shape": "ricker", "period": 0.005}
+    for load in (SHAKEN, on_top):
+        assert warnings(mass(**beds, boundaries=PERIODIC, loads=[load])) == []
+    part = on_top | {"between": [[8.0, 30.0], [12.0, 30.0]]}
+    (line,) = warnings(mass(**beds, boundaries=PERIODIC, loads=[part]))
+    assert "the joint sets give" in line
+
+
+def test_rollers_along_the_way_of_a_wave_that_moves_rock_into_them_are_named(mass):
+    rollers = {"left": "roller", "right": "roller", "bottom": "fixed"}
+    assert warnings(mass(waves=[], boundaries=rollers, loads=[SHAKEN])) == []
+    found = warnings(mass(waves=[], boundaries=rollers, loads=[SHAKEN | {"direction": [1.0, 0.0]}]))
+    held = ["boundaries.left = 'roller' holds the rock", "boundaries.right = 'roller' holds"]
+    assert all(one in line for one, line in zip(held, found, strict=True)), found
+
+
 def test_a_wave_that_is_inside_before_the_scene_begins_is_named(mass):
     """From 18 m above the bottom a P wave has entered 18 m / a before t = 0; from 2 m its first
     0.646 T have, which are none of it."""

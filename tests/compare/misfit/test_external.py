@@ -16,7 +16,7 @@ from jointwave.compare.figures.receivers import curve_table, panels
 from jointwave.compare.figures.tables import write_comparisons
 from jointwave.compare.misfit.alignment import align_curve, distance_at
 from jointwave.compare.misfit.external import doubts, read_curves
-from jointwave.compare.misfit.pairs import Comparison, measure_curves
+from jointwave.compare.misfit.pairs import Comparison, measure_curves, unit_doubts
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.runs.comparison import compare
 
@@ -342,6 +342,22 @@ def test_file_cut_anywhere_is_one_line(scene, tmp_path):
         cut.write_bytes(content[: len(content) * tenth // 10])
         with pytest.raises(SceneError, match=r"cut\.nc"):
             read_curves([str(cut)], [scene])
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "said"), [("", 1e-6, True), ("", 0.1, False), (" [MPa]", 1e-6, False)]
+)
+def test_a_curve_without_a_unit_is_doubted_where_its_size_is_another(
+    unit, factor, said, scene, tmp_path
+):
+    time, stress = sampled(scene)
+    file = save(tmp_path / "curve.csv", time, factor * stress, f"time [s], stress@20{unit}")
+    results = {"lattice": row_of_blocks.solve(scene)}
+    beside = align_curve(read_curves([file], [scene])[0], scene, results, False)
+    found = Comparison(scene, results, {}, measure_curves(beside, results), [beside])
+    lines = list(unit_doubts(found))
+    assert len(lines) == said
+    assert all("stress@20 has no unit" in one and "1.0e-06 times" in one for one in lines)
 
 
 def test_command_reads_what_run_wrote(tmp_path, jointwave):
