@@ -124,3 +124,9 @@ def test_what_does_not_fit_blocks_is_said_in_a_line(text, blocks, words, scene):
 def test_rigid_blocks_are_those_of_the_file(change, words, scene):
     answer = solver("dem").applies(scene(SCENE.replace(*change, 1)))
     assert not answer and words in answer.reason
+
+
+def test_rigid_blocks_of_a_file_need_a_spacing_to_pass_waves(scene):
+    bare = SCENE.replace("spacing = 0.5\n", "").replace("spacing = 1.0\n", "")
+    answer = solver("dem").applies(scene(bare))
+    assert not answer and "only where joint_sets have a spacing (m)" in answer.reason
