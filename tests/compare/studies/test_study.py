@@ -26,6 +26,7 @@ own = "lattice"
 vary = { "numerics.dem.step_fraction" = [0.1, 0.05] }
 order = 2
 """
+MANY = [*range(1, 200)]
 
 
 @pytest.mark.parametrize(
@@ -42,22 +43,18 @@ order = 2
         ('finest = "lattice"', 'finest = "truth"', "finest = 'truth'"),
         ("[0.1, 0.05]", "[2026-01-01]", "dates are no values"),
         ("[0.1, 0.05]", "[0x" + "f" * 9999 + "]", "4300 digits"),
-        (
-            "vary = {",
-            f"vary = {{ 'load.period' = {[*range(1, 200)]}, 'pillar.side' = {[*range(1, 200)]},",
-            "give 79202 points, at most 10000",
-        ),
+        ("vary = {", f"vary = {{ 'load.period' = {MANY}, 'pillar.side' = {MANY},", "at most 10000"),
     ],
 )
 def test_a_mistake_in_a_study_is_one_line(tmp_path, old, new, words):
     path = tmp_path / "study.toml"
     path.write_text(GOOD.replace(old, new, 1))
-    with pytest.raises(SceneError, match=words.replace("[", r"\[").replace("]", r"\]")):
+    with pytest.raises(SceneError, match=words) as error:
         load(str(path))
+    assert "\n" not in str(error.value)
 
 
 def test_a_curve_for_each_value_is_one_as_written_out(study):
-    """With the value in its label and its changes; the others of its keys stay."""
     one = {"label": "order {order}", "method": "continuum-jointed", "changes": {"a": 1}}
     found = study([{**one, "each": {"numerics.continuum.order": [2, 3]}}])
     assert [curve.label for curve in found.curves] == ["order 2", "order 3"]
@@ -73,42 +70,26 @@ def test_a_study_that_is_not_there_names_those_that_are(command):
     assert "oblique-joint" in said
 
 
-@pytest.fixture
-def made(once, command):
-    """Return the folder of a study run by the command, and its output; made once."""
-
-    def make(folder):
-        (mine := folder / "mine.toml").write_text(GOOD)
-        done = command("study", mine, "--out", folder / "out", "--workers", 1, "--json")
-        return folder, json.loads(done.out)
-
-    return once("study-mine", make)
-
-
-def test_command_writes_what_it_prints(made):
-    folder, facts = made
-    table = pd.read_csv(folder / "out" / "mine.csv")
-    data = xr.load_dataset(folder / "out" / "mine.nc")
+def test_command_writes_what_it_prints_and_two_ranks_the_same(command, tmp_path, mpiexec):
+    (mine := tmp_path / "mine.toml").write_text(GOOD)
+    facts = json.loads(command("study", mine, "--out", "out", "--workers", 1, "--json").out)
+    table, data = pd.read_csv(tmp_path / "out/mine.csv"), xr.load_dataset(tmp_path / "out/mine.nc")
     assert [r["numerical"] for r in facts["rows"]] == pytest.approx(list(table.numerical), rel=1e-8)
     assert list(data.numerical.values) == pytest.approx(list(table.numerical), rel=1e-8)
     assert data.attrs["processor"] and json.loads(data.attrs["study"])["title"] == "two steps"
     assert facts["orders"][0]["measured"] == pytest.approx(2, abs=0.1)
-
-
-def test_two_ranks_give_the_table_of_one_process(made, tmp_path, mpiexec):
-    (folder, facts), (launcher, env) = made, mpiexec
-    study = ("study", folder / "mine.toml", "--out", tmp_path, "--json")
+    launcher, env = mpiexec
+    study = ("study", mine, "--out", tmp_path / "two", "--json")
     two = [*launcher, "-n", "2", sys.executable, "-m", "jointwave", *map(str, study)]
     done = subprocess.run(two, capture_output=True, text=True, env=env)
     assert done.returncode == 0, done.stderr
-    ranks = json.loads(done.stdout)
     keys = ("numerical", "total", "steps", "work")
-    one, two = ([[row[key] for key in keys] for row in f["rows"]] for f in (facts, ranks))
+    both = [facts["rows"], json.loads(done.stdout)["rows"]]
+    one, two = ([[row[key] for key in keys] for row in rows] for rows in both)
     assert one == two
 
 
 def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
-    """Two errors over two costs; each curve's line holds its points in the study's order."""
     timed = study(timed=True, repeats=1, finest="jointed-bar")
     table = judged(experiment(timed, tmp_path).rows())
     figure = draw("wp", table, COSTS)
@@ -121,14 +102,12 @@ def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
     assert all(ax.get_xscale() == ax.get_yscale() == "log" for ax in figure.axes)
 
 
-def test_points_whose_errors_cancel_are_crossed_where_they_measure(study):
+def test_points_whose_errors_cancel_are_crossed_where_they_measure():
     """And curves of one model have one colour, with markers of their own."""
     about = {"settings": {}, "state": "done", "message": "", "numerical": 0.01, "modelling": 0.02}
-    numbers = {"total": 0.03, "steps": 1.0, "freedoms": 1.0, "work": 1.0, "total_floor": 0.0}
-    rows = [
-        dict(**about, **numbers, curve=name, method="dem", measured=measured)
-        for name, measured in (("a", 0.03), ("b", 0.005))
-    ]
+    about |= {"total": 0.03, "steps": 1.0, "freedoms": 1.0, "work": 1.0, "total_floor": 0.0}
+    points = (("a", 0.03), ("b", 0.005))
+    rows = [about | {"curve": name, "method": "dem", "measured": far} for name, far in points]
     (_, total) = draw("wp", judged(rows), {"work": "work"}).axes
     (crosses,) = [line for line in total.lines if line.get_marker() == "x"]
     assert list(crosses.get_ydata()) == [0.005]
