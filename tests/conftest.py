@@ -29,7 +29,7 @@ from jointwave.numerics import jit
 from jointwave.results.arrays import copied, fill
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
-# `make fuzz` looks for others of bad input, JOINTWAVE_EXAMPLES=night for a thousand of every test.
+# JOINTWAVE_EXAMPLES=night looks for a thousand others of every test.
 settings.register_profile("jointwave", deadline=None, max_examples=50, derandomize=True)
 settings.register_profile("night", deadline=None, max_examples=1000)
 settings.load_profile(os.environ.get("JOINTWAVE_EXAMPLES", "jointwave"))
@@ -61,14 +61,11 @@ PILLAR = Path(cases.__file__).parent / "guo-li-2002" / "fig-03.toml"
 #: to the same processors, spins while it waits, and may complain of the network, which nothing here
 #: uses; others ignore these.
 OPEN_MPI = {
+    **dict.fromkeys(("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"), "1"),
+    **dict.fromkeys(("PRTE_ALLOW_RUN_AS_ROOT", "PRTE_ALLOW_RUN_AS_ROOT_CONFIRM"), "1"),
+    **dict.fromkeys(("OMPI_MCA_rmaps_base_oversubscribe", "OMPI_MCA_mpi_yield_when_idle"), "1"),
     "OMPI_MCA_btl": "^tcp",
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-    "PRTE_ALLOW_RUN_AS_ROOT": "1",
-    "PRTE_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "PRTE_MCA_hwloc_default_binding_policy": "none",
 }
@@ -148,9 +145,10 @@ def once(tmp_path_factory):
     return made
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def pillar():
-    """Return a function that gives the paper's free pillar with dotted keys changed."""
+    """Return a function that gives the paper's free pillar with dotted keys changed, whose dots may
+    be written as "__"."""
 
     def scene(**changes):
         overrides = {key.replace("__", "."): value for key, value in changes.items()}
@@ -161,8 +159,7 @@ def pillar():
 
 @pytest.fixture(scope="session")
 def in_toml():
-    """Return a function that spells a value as TOML does: tables inline, a scene's own a line
-    each."""
+    """Return a function that spells a value as TOML does: tables inline, a scene's keys a line."""
 
     def inline(value):
         if isinstance(value, list):
@@ -249,6 +246,12 @@ def _in_a_child(kernel, types):
 COMPILE_FOR, jit.compile_for = jit.compile_for, _in_a_child
 
 
+@pytest.fixture(scope="session")
+def keeper_at():
+    """Return a function of a count of samples: what ends a run there, and lets it go on."""
+    return Checkpointer
+
+
 class Checkpointer:
     """Keeps what a run was when some samples were done, and ends it there once."""
 
@@ -262,12 +265,6 @@ class Checkpointer:
         if self.kept is None and samples >= self.at:
             self.kept, self.done = copied(parts), samples
             raise InterruptedRun("enough")
-
-
-@pytest.fixture(scope="session")
-def keeper_at():
-    """Return a function of a count of samples: what ends a run there, and lets it go on."""
-    return Checkpointer
 
 
 @pytest.fixture
@@ -294,9 +291,8 @@ def jointwave(monkeypatch, capsys, tmp_path_factory):
 @pytest.fixture(scope="session")
 def without_warnings():
     """Return a function that gives the lines of a text but for warnings of what a scene says."""
-    return lambda text: [
-        line for line in text.splitlines() if not line.startswith("jointwave: warning: ")
-    ]
+    warned = "jointwave: warning: "
+    return lambda text: [line for line in text.splitlines() if not line.startswith(warned)]
 
 
 @pytest.fixture(scope="module")
@@ -321,7 +317,8 @@ def instructions():
 
 @pytest.fixture(scope="session")
 def mpiexec():
-    """Return the command that starts MPI processes, and the environment that it is started in.
+    """Return the command that starts MPI processes, and the environment that it is started in:
+    without what MPI left there, or mpiexec would take itself for a part of it.
 
     They spin while they wait for one another. What else runs goes first: at equal priority each
     wait of theirs takes a time slice of it, and a test ten times as long.
@@ -329,13 +326,8 @@ def mpiexec():
     launcher = shutil.which("mpiexec")
     if launcher is None:
         pytest.skip("no mpiexec here")
-    return ("nice", "-n", "10", launcher), {**_outside_mpi(dict(os.environ)), **OPEN_MPI}
-
-
-def _outside_mpi(environment):
-    """Return an environment without what MPI left there, if it was started before the workers were:
-    mpiexec would take itself for a part of it."""
-    return {k: v for k, v in environment.items() if not k.startswith(("OMPI_", "PMIX_"))}
+    own = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_"))}
+    return ("nice", "-n", "10", launcher), {**own, **OPEN_MPI}
 
 
 @pytest.fixture(scope="session")
@@ -345,7 +337,6 @@ def paper_folder() -> Path:
 
 
 @pytest.fixture(scope="session")
-def scene_with(paper_folder):
-    """A function of dotted keys: the undamped, free-ended pillar of figure 3 with them changed."""
-    alone = {"variants": []}  # each is validated, and some contradict some changes
-    return lambda **changes: cases.load(paper_folder / "fig-03.toml", alone | changes)[0]
+def scene_with(pillar):
+    """The same as `pillar`."""
+    return pillar

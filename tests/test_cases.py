@@ -26,10 +26,3 @@ def test_spall_with_strong_joints_is_the_linear_chain():
     """Joints whose strength the pulse does not reach carry it as those without a strength."""
     scene = cases.load_variant(SHIPPED / "beyond" / "spall.toml", "strong joints")
     assert misfit(solve("dem", scene), row_of_blocks.solve(scene)) < 2e-3
-
-
-def test_every_folder_ships_scenes():
-    """The paper's nine figures are all there, and scenes beyond them."""
-    names = {f"{path.parent.name}/{path.stem}" for path in shipped_files()}
-    assert {f"guo-li-2002/fig-{n:02d}" for n in range(2, 11)} <= names
-    assert {name.split("/")[0] for name in names} == {"guo-li-2002", "beyond", "hard", "rock-mass"}

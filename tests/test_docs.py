@@ -141,13 +141,6 @@ def test_a_new_parameter_passes_through_the_files_that_are_listed():
     assert listed == {name_of(file) for file in naming}
 
 
-def test_formulas_become_mathml(tools):
-    """Whatever theory says in LaTeX, as blocks and in lines, is converted whole."""
-    pytest.importorskip("latex2mathml")
-    html = tools("hooks").mathml(r'<span class="arithmatex">\(a &lt; b_1\)</span>')
-    assert html.startswith("<math") and "arithmatex" not in html and "&#x0003C;" in html
-
-
 def test_what_theory_cites_is_among_the_sources():
     """Author and year of every citation stand in one row of the sources."""
     cited = re.compile(r"([A-Z][\w-]+)(?:'s)?(?: et al\.)?,?\s+\(?((?:18|19|20)\d\d)\b")

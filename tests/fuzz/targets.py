@@ -31,6 +31,7 @@ from jointwave.compare.engines import applies, names, solver
 from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.studies.study import load as load_study
 from jointwave.compare.studies.work_precision import key
+from jointwave.dem import simulate
 from jointwave.results.dataset import scene_hash
 
 SECONDS = 5  # of the processor, for one input
@@ -64,8 +65,8 @@ def check(message):
 
 
 def written(folder, name, data):
-    (folder / name).write_bytes(data)
-    return folder / name
+    (file := folder / name).write_bytes(data)
+    return file
 
 
 def scene(data, folder):
@@ -80,20 +81,16 @@ def examine(one):
     scene_hash(one)
     answers = {name: applies(name, one) for name in names()}
     if not one.is_column:
-        if partition_bytes(one) <= TINY_PARTITION:
-            blocks_of_scene(one)
-        return
-    from jointwave.continuum.mesh.size import elements_along
-
+        return blocks_of_scene(one) if partition_bytes(one) <= TINY_PARTITION else None
     calibrate(one)
     step_means(load_history(one), one.interval, 4)
+    from jointwave.continuum.mesh.size import elements_along
+
     for name in (name for name in answers if name.startswith("continuum") and answers[name]):
         elements_along(one, name.removeprefix("continuum-"))
     is_plain = active_effects(one) == PLAIN and one.numerics.dem.scheme == "leapfrog"
     steps = solver("dem").prepare(one).steps
     if steps * one.pillar.block_count <= TINY and is_plain and one.record.energy:
-        from jointwave.dem import simulate
-
         simulate(one)
 
 
@@ -149,10 +146,6 @@ for name in SOLVERS:  # a module that is first imported by a command would keep 
 SOLVES = "a command would solve something"
 
 
-def stop(*_, **__):
-    raise SceneError("here", "", None, SOLVES)
-
-
 def command(data, folder):
     """A command line, one argument a line, up to where it would solve something."""
     arguments = [os.fsdecode(part) for part in data.replace(b"\0", b"").split(b"\n")]
@@ -161,7 +154,7 @@ def command(data, folder):
         for one in (chdir(folder), redirect_stderr(said), redirect_stdout(shown)):
             stack.enter_context(one)
         for name in SOLVERS:
-            stack.enter_context(patch(name, stop))
+            stack.enter_context(patch(name, side_effect=SceneError("here", "", None, SOLVES)))
         stack.enter_context(patch.object(sys, "argv", ["jointwave", *arguments]))
         with pytest.raises(SystemExit) as end:
             program.main()

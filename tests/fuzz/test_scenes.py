@@ -5,6 +5,7 @@ import json
 import tomllib
 from pathlib import Path
 
+import pytest
 from hypothesis import strategies as st
 
 from jointwave import cases
@@ -13,7 +14,6 @@ from jointwave.compare.studies import SHIPPED as STUDIES
 SCENE_FILES = sorted(Path(cases.__file__).parent.glob("*/*.toml"))
 SCENES = [path.read_text(encoding="utf-8") for path in SCENE_FILES]
 STUDY_TEXTS = [p.read_text(encoding="utf-8") for p in sorted(STUDIES.glob("*.toml"))]
-EXAMPLES = 150
 
 ROUND = [2, 3, 10, 0.1, 0.5, 1e-3, 1e-6, 1e-9, 1e6, 1e9, 10**400, -(2**70), 2**63]
 EXTREME = [0, -1, 1, 1e-30, 1e30, -1e30, 1e-31, 1e300, 5e-324, float("nan"), float("inf")]
@@ -104,13 +104,8 @@ def spoilt(draw, texts):
     }[kind]
 
 
-def test_a_scene_with_changed_keys_is_read_or_refused(meets):
-    meets("scene", tables(SCENES).map(str.encode), EXAMPLES)
-
-
-def test_a_spoilt_scene_file_is_read_or_refused(meets):
-    meets("scene", spoilt(SCENES), EXAMPLES)
-
-
-def test_a_study_with_changed_keys_is_read_or_refused(meets):
-    meets("study", tables(STUDY_TEXTS).map(str.encode) | spoilt(STUDY_TEXTS), EXAMPLES)
+@pytest.mark.parametrize(
+    ("target", "texts", "count"), [("scene", SCENES, 300), ("study", STUDY_TEXTS, 150)]
+)
+def test_a_file_with_changed_keys_or_spoilt_is_read_or_refused(meets, target, texts, count):
+    meets(target, tables(texts).map(str.encode) | spoilt(texts), count)
