@@ -1,7 +1,6 @@
 """The pytest plugin, run on scene files as a user's own tests would be."""
 
 import re
-import subprocess
 import sys
 from importlib import import_module
 
@@ -13,28 +12,22 @@ MEASURES = "jointwave.compare.cli.scene_tests"  # the module that solves scenes
 
 SCENE = """\
 title = "ten blocks"
-
 [pillar]
 length = 5.0
 side = 0.5
 block = 0.5
-
 [rock]
 density = 2400.0
 p_speed = 2200.0
 s_speed = 800.0
-
 [load]
 shape = "sine"
 amplitude = 1.0e6
 period = 0.01
-
 [time]
 duration = 0.01
-
 [record]
 stress = [2.0]
-
 [expect]
 "{pair}" = {bound}
 """
@@ -104,11 +97,8 @@ def test_bound_that_is_not_met_prints_pair_misfit_bound_and_command_alone(run, p
     ("of", "bound", "says"),
     [
         ("stress", 0.01, None),
-        ("velocity", 0.02, None),
         ("PPV", 0.01, None),
-        ("stress", 1e-9, "misfit * of stress at 2 m exceeds the bound 1e-09"),
         ("velocity", 1e-9, "misfit * of velocity at 2.25 m exceeds the bound 1e-09"),
-        ("PPV", 1e-9, "misfit * of PPV at 2.25 m exceeds the bound 1e-09"),
         ("peak stress", 1e-9, "misfit * of peak stress at 2 m exceeds the bound 1e-09"),
         ("rotation", 1.0, "no receiver of the scene records it"),
         ("speed", 1.0, "must end in ': ' and one of *velocity*PPV, peak stress"),
@@ -187,11 +177,7 @@ def test_scene_that_leaves_its_axis_is_held_by_its_shear(run, solved):
             "[numerics]\ndem.step_fraction = 2.0\n[time]",
             "dem ~ lattice: *step_fraction = 2.0*critical step*",
         ),
-        (
-            "dem ~ lattice",
-            "dem ~ no-tension-chain",
-            "dem ~ no-tension-chain does not apply to any variant: *tension*",
-        ),
+        ("lattice", "no-tension-chain", "*-chain does not apply to any variant: *tension*"),
     ],
 )
 def test_broken_scene_fails_in_one_line(run, old, new, message):
@@ -225,14 +211,8 @@ def test_a_run_without_scenes_imports_nothing_heavy(pytester):
         """
     )
     (pytester.path / "pyproject.toml").write_text("[project]\nname = 'x'\n")
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:hypothesispytest", "-q", str(pytester.path)],
-        cwd=pytester.path,
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
-    assert done.returncode == 0, done.stdout
+    done = pytester.runpytest_subprocess("-p", "no:hypothesispytest", "-q")
+    done.assert_outcomes(passed=1)
 
 
 def test_a_rock_mass_is_held_to_its_bounds(run, one_joint, in_toml):
@@ -251,9 +231,9 @@ def test_a_rock_mass_is_held_to_its_bounds(run, one_joint, in_toml):
     scene["joint_sets"][0] |= {"dip": 20.0, "through": [4.0, 4.0]}
     result = run(scene=in_toml(scene))
     result.assert_outcomes(passed=1, failed=2)
-    result.stdout.re_match_lines(
-        [r"oblique-joint ~ continuum-jointed: misfit \S+ of [a-z]+ [xy]+ at \[4, 2\] m exceeds"]
-    )
-    result.stdout.re_match_lines(
-        [r"dem ~ oblique-joint does not apply to any variant: dem: numerics.dem"]
+    result.stdout.re_match_lines_random(
+        [
+            r"oblique-joint ~ continuum-jointed: misfit \S+ of [a-z]+ [xy]+ at \[4, 2\] m exceeds",
+            r"dem ~ oblique-joint does not apply to any variant: dem: numerics.dem",
+        ]
     )
