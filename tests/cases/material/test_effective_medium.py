@@ -26,14 +26,6 @@ def random_sets(dimension, count=3, seed=0):
     return [JointSet(x, *rng.uniform(0, 2, 2)) for x in n]
 
 
-def test_two_orthogonal_sets_in_space():
-    """lambda = mu = rho = 1, spacing 1, K_n = 2, K_s = 1: the speeds along x and (1, 1, 0)."""
-    sets = [JointSet(n, 0.5, 1.0) for n in np.eye(3)[:2]]
-    found, _ = speeds(stiffness(UNIT, sets, 3), 1.0, [[1, 0, 0], [1, 1, 0]])
-    assert found[0] == pytest.approx([0.57735, 0.70711, 1.08012], abs=5e-6)
-    assert found[1] == pytest.approx([0.70711, 0.70711, 1.0], abs=5e-6)
-
-
 def test_two_orthogonal_sets_in_plane_strain():
     """S_11 = 3/8 + 1/2, S_12 = -1/8, S_66 = 1 + 2: C_11 = 7/6, C_12 = 1/6, C_66 = 1/3, and the
     speeds along x those of the same sets in space."""

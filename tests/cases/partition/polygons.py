@@ -1,6 +1,6 @@
 """Domains cut in the plane; widths and angles of polygons, independent of how these are cut.
 
-Polygons are given by their corners [k, 2], counter-clockwise, and the first corner of each [n + 1].
+Polygons are given by their corners [k, 2], counter-clockwise.
 """
 
 import numpy as np
@@ -49,37 +49,17 @@ def closed(found, tolerance):
     return around
 
 
-def following(first: np.ndarray) -> np.ndarray:
-    """Return the index of the corner that comes after each [k]."""
-    after = np.arange(1, first[-1] + 1)
-    after[first[1:] - 1] = first[:-1]
-    return after
-
-
-def owner(first: np.ndarray) -> np.ndarray:
-    """Return the polygon of each corner [k]."""
-    return np.repeat(np.arange(len(first) - 1), np.diff(first))
-
-
-def widths(corners: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """Return the least width of each convex polygon [n], m: over its sides, the distance of the
-    corner that is farthest from it."""
-    whose, after, number = owner(first), following(first), np.diff(first)
-    along = corners[after] - corners
+def width(corners: np.ndarray) -> float:
+    """Return the least width of a convex polygon, m: over its sides, the distance of the corner
+    that is farthest from it."""
+    along = np.roll(corners, -1, axis=0) - corners
     along /= np.hypot(*along.T)[:, None]
-    farthest = np.zeros(len(corners))
-    for step in range(1, int(number.max())):
-        other = first[whose] + (np.arange(len(corners)) - first[whose] + step) % number[whose]
-        away = corners[other] - corners
-        np.maximum(farthest, along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0], out=farthest)
-    return np.minimum.reduceat(farthest, first[:-1])
+    away = corners - corners[:, None]
+    return float((along[:, :1] * away[..., 1] - along[:, 1:] * away[..., 0]).max(axis=1).min())
 
 
-def least_angles(corners: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """Return the least interior angle of each convex polygon [n], degrees."""
-    after = following(first)
-    out = corners[after] - corners
-    back = np.empty_like(out)
-    back[after] = -out
-    angle = np.arctan2(out[:, 0] * back[:, 1] - out[:, 1] * back[:, 0], (out * back).sum(axis=1))
-    return np.degrees(np.minimum.reduceat(angle, first[:-1]))
+def angles(corners: np.ndarray) -> np.ndarray:
+    """Return the interior angles of a polygon, degrees."""
+    out, back = (np.roll(corners, -turn, axis=0) - corners for turn in (1, -1))
+    cross = out[:, 0] * back[:, 1] - out[:, 1] * back[:, 0]
+    return np.degrees(np.arctan2(cross, (out * back).sum(axis=1)))

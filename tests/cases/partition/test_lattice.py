@@ -10,7 +10,9 @@ from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.scene import blocks_of_scene
-from tests.cases.partition.polygons import widths
+from tests.cases.partition.polygons import width
+
+BOX = (6.0, 5.0, 4.0)
 
 
 @pytest.fixture(scope="session")
@@ -30,12 +32,16 @@ def cut(own):
 
 
 def test_quiet_sides_are_met_in_the_middle_of_blocks(scene):
-    """Half blocks at the left and the right, quarter ones at corners of two quiet sides."""
+    """Half blocks at the left and the right, quarter ones at corners of two quiet sides; in space
+    eighths where three of them meet."""
     sides = dict.fromkeys(("left", "right", "bottom"), "quiet")
     found = cut(scene(**sides))
     assert np.sort(found.volume)[:2] == pytest.approx([0.25 * 10 / 9.5] * 2, rel=1e-12)
     assert found.volume.sum() == pytest.approx(120, rel=1e-12)
     assert np.median(found.volume) == pytest.approx(10 / 9.5, rel=1e-12)
+    found = cut(scene(size=BOX, **dict.fromkeys(("left", "front", "bottom"), "quiet")))
+    assert found.volume.min() == pytest.approx(found.volume.max() / 8, rel=1e-9)
+    assert found.volume.sum() == pytest.approx(120.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("dip", [0.0, 30.0, 45.0, -70.0])
@@ -120,10 +126,9 @@ def test_slivers_of_a_lattice_are_joined_along_joints_not_across_them(scene):
     found, alone = cut(own), blocks_of_scene(own)
     mine = found.contacts.of_joints(1)
     assert found.contacts.area[mine].sum() == pytest.approx(alone.contacts.area[0], rel=1e-9)
-    assert widths(*found.outlines).min() > 0.03 * 1.1
+    assert min(width(found.outlines.of(k)) for k in range(found.count)) > 0.03 * 1.1
 
 
-BOX = (6.0, 5.0, 4.0)
 BED = {"dip": 0.0, "spacing": 2.0}
 STEEP = {"dip": 90.0, "dip_direction": 90.0, "spacing": 2.0}
 
@@ -142,14 +147,6 @@ def test_rock_in_space_with_a_poisson_effect_is_cut_in_tetrahedra(scene):
     """Five to a cube: a regular one in its middle, and four at corners."""
     volume = np.sort(cut(scene(BED, poisson=0.25, size=BOX)).volume)
     assert volume == pytest.approx(np.repeat([1 / 6, 1 / 3], [480, 120]), rel=1e-9)
-
-
-def test_quiet_sides_in_space_are_met_in_the_middle_of_blocks(scene):
-    """Half blocks at sides, eighths where three of them meet."""
-    sides = dict.fromkeys(("left", "front", "bottom"), "quiet")
-    found = cut(scene(size=BOX, **sides))
-    assert found.volume.min() == pytest.approx(found.volume.max() / 8, rel=1e-9)
-    assert found.volume.sum() == pytest.approx(120.0, rel=1e-12)
 
 
 dips, degrees = st.floats(-90.0, 90.0), st.floats(0.0, 360.0)

@@ -96,23 +96,6 @@ def test_a_history_is_beside_the_scene_unless_it_is_asked_for(written, tmp_path)
         load_variant(path, "S", {"waves.0.file": "none.csv"})
 
 
-@pytest.mark.parametrize(
-    ("load", "boundaries"),
-    [
-        ({"kind": "force", "quantity": "force", "at": [3.0, 9.0], "direction": [1.0, 0.0]}, {}),
-        ({"kind": "pressure", "side": "top", "between": [[1.0, 40.0], [9.0, 40.0]]}, {}),
-        ({"kind": "pressure", "opening": 0, "between": [[25.0, 16.0], [25.0, 20.0]]}, {}),
-        (
-            {"kind": "base", "side": "top", "quantity": "acceleration", "direction": [1.0, 0.0]},
-            {"boundaries.top": "fixed"},
-        ),
-    ],
-)
-def test_loads_of_every_kind(written, load, boundaries):
-    changes = {"loads": [{"shape": "step", "amplitude": 1e5, **load}], **boundaries}
-    assert load_variant(written(GOOD), "", changes).loads[0].kind == load["kind"]
-
-
 def test_sides_of_a_slope(written):
     """Left, right, bottom and top of an outline where it follows its bounding box; a wave from
     below meets no free surface, one from the left does."""
