@@ -8,7 +8,9 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.partition.pillar import blocks_of_pillar
 
-PILLARS = [scene for name in shipped() for scene in load_variants(name) if scene.is_column]
+SCENES = (scene for name in shipped() for scene in load_variants(name) if scene.is_column)
+#: One of each kind of pillar, by all that its blocks depend on.
+PILLARS = {repr((s.pillar, s.parts, s.soft_layers, s.scatter)): s for s in SCENES}.values()
 
 
 @pytest.mark.parametrize("scene", PILLARS, ids=lambda one: f"{one.title} {one.name}")

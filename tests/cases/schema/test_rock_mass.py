@@ -10,81 +10,40 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load, load_variant
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.rock_mass import RockMass
+from tests.cases.schema.test_mistakes import PLANE
 
-GOOD = """\
-title = "good"
-rock = { density = 2600.0, intact_modulus = 5.0e10 }
-boundaries = { bottom = "quiet", left = "quiet", right = "quiet" }
-prestress = { xx = 5.0e6, yy = 1.0e7 }
-gravity = { static = false }
-time = { duration = 0.1 }
-record = { points = [[40.0, 30.0]], joints = [[31.0, 10.5]] }
-
-[domain]
-size = [60.0, 40.0]
-openings = [[[25.0, 15.0], [35.0, 15.0], [35.0, 22.0], [25.0, 22.0]]]
-non_convex = "cut"
-
-[[joint_sets]]
-name = "bedding"
-dip = 35.0
-spacing = 2.0
-normal_stiffness = 1.0e10
-shear_stiffness = 4.0e9
-
-[[joint_sets]]
-name = "cross"
-dip = -55.0
-spacing = 3.0
-ends_at = ["bedding"]
-normal_stiffness = 2.0e10
-shear_stiffness = 8.0e9
-friction_angle = 30.0
-
-[[waves]]
-kind = "P"
-direction = [0.0, 1.0]
-shape = "ricker"
-amplitude = 1.0e6
-period = 0.01
-
-[[variants]]
-name = "S"
-[[variants.waves]]
-kind = "S"
-direction = [0.0, 1.0]
-shape = "table"
-file = "pulse.csv"
-amplitude = 1.0e6
-"""
+S_WAVE = {"kind": "S", "direction": [0.0, 1.0], "shape": "table", "amplitude": 1e6}
+VARIANT = {"name": "S", "waves": [S_WAVE | {"file": "pulse.csv"}]}
 
 
 @pytest.fixture
-def written(tmp_path):
-    """Return a function that writes a scene and the history that it names."""
+def written(tmp_path, in_toml):
+    """Return a function that writes a scene with more variants and tables, and the history that one
+    of them names."""
     (tmp_path / "pulse.csv").write_text("0.0, 0.0\n0.01, 1.0\n0.02, 0.0\n")
 
-    def write(text):
+    def write(*variants, **tables):
         path = tmp_path / "mass.toml"
-        path.write_text(text)
+        every = PLANE | {"variants": [VARIANT, *variants]} | tables
+        path.write_text(in_toml({key: one for key, one in every.items() if one is not None}))
         return path
 
     return write
 
 
 def test_the_good_scene_is_good(written):
-    one, other = load(written(GOOD))
+    one, other = load(written())
     assert isinstance(one, RockMass) and (one.name, other.name) == ("", "S")
     assert one.where.endswith("mass.toml") and other.where.endswith("mass.toml [S]")
     assert [s.name for s in one.joint_sets] == ["bedding", "cross"]
     assert one.interval == 0.01 / 200 and other.interval == 0.1 / 2000
     assert other.waves[0].history.stress.tolist() == [0.0, 1.0, 0.0]
     assert one.boundaries.top == "free" and one.gravity.direction == [0.0, -1.0]
-    assert one.joint_sets[1].friction_angle == 30.0 and one.joint_sets[1].point_rule == "vertices"
+    assert one.joint_sets[1].offset == 0.5 and one.joint_sets[1].point_rule == "vertices"
 
 
 def test_a_history_is_beside_the_scene_unless_it_is_asked_for(written, tmp_path):
-    path = written(GOOD)
+    path = written()
     elsewhere = tmp_path / "far" / "pulse.csv"
     elsewhere.parent.mkdir()
     elsewhere.write_text("0.0, 0.0\n0.01, 2.0\n")
@@ -100,8 +59,8 @@ def test_sides_of_a_slope(written):
     """Left, right, bottom and top of an outline where it follows its bounding box; a wave from
     below meets no free surface, one from the left does."""
     slope = [[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [45.0, 40.0], [20.0, 14.0], [0.0, 14.0]]
-    changes = {"domain": {"outline": slope}, "record.joints": []}
-    path = written(GOOD)
+    changes = {"domain": {"outline": slope}, "record.joints": [], "loads": []}
+    path = written()
     assert load_variant(path, "", {**changes, "boundaries.outline": "free"}).boundaries
     with pytest.raises(SceneError, match=r"boundaries\.outline = 'free': must be 'quiet': waves"):
         load_variant(path, "", {**changes, "waves.0.direction": [1.0, 0.0]})
@@ -110,7 +69,7 @@ def test_sides_of_a_slope(written):
 def test_both_kinds_are_read_and_told_apart(written, scene_with):
     """A command for one kind of scene only says so in one line, with the file; the error crosses
     processes whole."""
-    path = written(GOOD)
+    path = written()
     mass, pillar = load(path)[0], scene_with()
     assert (mass.kind, pillar.kind) == ("rock mass", "pillar")
     assert pillar_of(pillar) is pillar
@@ -136,18 +95,17 @@ def test_a_pillar_imports_nothing_of_rock_masses_or_of_constant_q():
 
 
 def test_an_empty_table_of_a_variant_has_its_defaults_unless_it_is_there(written):
-    text = '\n[[variants]]\nname = "heavy"\ngravity = {}\nboundaries = {}\n'
-    first, *_, heavy = load(written(GOOD.replace("gravity = { static = false }\n", "") + text))
+    variant = {"name": "heavy", "gravity": {}, "boundaries": {}}
+    first, *_, heavy = load(written(variant, gravity=None))
     assert first.gravity is None and heavy.gravity.acceleration == 9.81
     assert heavy.boundaries == first.boundaries
 
 
 def test_a_variant_changes_one_of_a_list_of_tables(written):
-    path = written(GOOD + '\n[[variants]]\nname = "steep"\njoint_sets.1.dip = 80.0\n')
-    first, *_, steep = load(path)
+    steep = {"name": "steep", "joint_sets": {"1": {"dip": 80.0}}}
+    first, *_, steep = load(written(steep))
     assert [s.dip for s in steep.joint_sets] == [first.joint_sets[0].dip, 80.0]
     assert steep.joint_sets[1].model_dump() == {**first.joint_sets[1].model_dump(), "dip": 80.0}
-    path = written(GOOD + '\n[[variants]]\nname = "none"\njoint_sets.7.dip = 80.0\n')
     allowed = r"variants\[1\].joint_sets.7.dip = 80.0: 7 must be .*of the list, 0 to 1"
     with pytest.raises(SceneError, match=allowed):
-        load(path)
+        load(written({"name": "none", "joint_sets": {"7": {"dip": 80.0}}}))
