@@ -77,42 +77,38 @@ def in_space(x):
     return np.pad(x, ((0, 0), (0, 3 - x.shape[1])))
 
 
+def numbered(solids):
+    """Return vertices in space [n, 3], and the faces of each block by their own numbers."""
+    faces = [face for one in solids for face in one]
+    numbers = iter(np.split(np.arange(sum(map(len, faces))), np.cumsum([*map(len, faces)])[:-1]))
+    each = [[next(numbers).tolist() for _ in one] for one in solids]
+    return in_space(np.concatenate(faces)), each
+
+
 def write_vtu(path, solids):
     """One cell a block, with vertices of its own."""
-    x, cells, first = [], [], 0
-    for faces in solids:
-        numbered = []
-        for one in faces:
-            x.append(in_space(one))
-            numbered.append(list(range(first, first + len(one))))
-            first += len(one)
-        kind = "polygon" if faces[0].shape[1] == 2 else f"polyhedron{sum(map(len, numbered))}"
-        cells.append((kind, numbered if kind == "polygon" else [numbered]))
-    meshio.write(path, meshio.Mesh(np.concatenate(x), cells))
+    x, blocks = numbered(solids)
+    cells = [(f"polyhedron{sum(map(len, faces))}", [faces]) for faces in blocks]
+    if solids[0][0].shape[1] == 2:
+        cells = [("polygon", faces) for faces in blocks]
+    meshio.write(path, meshio.Mesh(x, cells))
 
 
 def write_obj(path, solids):
-    lines, first = ["# blocks"], 1
-    for k, faces in enumerate(solids):
+    x, blocks = numbered(solids)
+    lines = ["# blocks", *("v {:.17g} {:.17g} {:.17g}".format(*one) for one in x)]
+    for k, faces in enumerate(blocks):
         lines.append(f"o block {k}")
-        for one in faces:
-            lines += ["v {:.17g} {:.17g} {:.17g}".format(*x) for x in in_space(one)]
-            lines.append("f " + " ".join(f"{first + i}//1" for i in range(len(one))))
-            first += len(one)
+        lines += ["f " + " ".join(f"{i + 1}//1" for i in face) for face in faces]
     path.write_text("\n".join(lines))
 
 
 def write_json(path, solids):
     """An assembly as COMPAS writes it."""
-    node = {}
-    for k, faces in enumerate(solids):
-        x = in_space(np.concatenate(faces))
-        first = np.cumsum([0, *map(len, faces)])
-        mesh = {
-            "vertex": {str(i): dict(zip("xyz", p, strict=True)) for i, p in enumerate(x.tolist())},
-            "face": {str(i): list(range(a, b)) for i, (a, b) in enumerate(pairwise(first))},
-        }
-        mesh = json.loads(json.dumps(mesh, default=int))
+    (x, blocks), node = numbered(solids), {}
+    for k, faces in enumerate(blocks):
+        own = {str(i): dict(zip("xyz", x[i].tolist(), strict=True)) for face in faces for i in face}
+        mesh = {"vertex": own, "face": {str(i): face for i, face in enumerate(faces)}}
         node[str(k)] = {"block": {"dtype": "compas_assembly.datastructures/Block", "data": mesh}}
     graph = {"dtype": "compas.datastructures/Graph", "data": {"node": node, "edge": {}}}
     whole = {"dtype": "compas_assembly.datastructures/Assembly", "data": {"graph": graph}}
@@ -121,24 +117,18 @@ def write_json(path, solids):
 
 def write_msh(path, solids):
     """One elementary entity a block, in triangles or tetrahedra from its middle."""
-    x, cells, tags, first = [], [], [], 0
-    dim = solids[0][0].shape[1]
-    for k, faces in enumerate(solids):
-        middle = np.concatenate(faces).mean(axis=0)
-        x.append(in_space(middle[None]))
-        centre, own = first, []
-        first += 1
-        for one in faces:
-            x.append(in_space(one))
-            at = list(range(first, first + len(one)))
-            first += len(one)
-            if dim == 2:
-                own += [[centre, a, b] for a, b in zip(at, at[1:] + at[:1], strict=True)]
-            else:
-                own += [[centre, at[0], a, b] for a, b in pairwise(at)]
-        cells.append(("triangle" if dim == 2 else "tetra", np.array(own)))
+    (x, blocks), plane = numbered(solids), solids[0][0].shape[1] == 2
+    middles = np.array([np.concatenate(faces).mean(axis=0) for faces in solids])
+    cells, tags = [], []
+    for k, faces in enumerate(blocks):
+        centre = len(x) + k
+        if plane:
+            own = [[centre, *pair] for face in faces for pair in pairwise([*face, face[0]])]
+        else:
+            own = [[centre, face[0], *pair] for face in faces for pair in pairwise(face)]
+        cells.append(("triangle" if plane else "tetra", np.array(own)))
         tags.append(np.full(len(own), k + 1))
-    x = np.concatenate(x)
+    x = np.concatenate([x, in_space(middles)])
     # one vertex a place within a block, or its parts would not meet
     _, number, which = np.unique(np.round(x, 12), axis=0, return_index=True, return_inverse=True)
     cells = [(kind, which.reshape(-1)[own]) for kind, own in cells]

@@ -93,20 +93,21 @@ def test_convex_blocks_without_slivers_fill_the_domain_and_do_not_overlap(domain
     assert union.symmetric_difference(shape).area < 1e-7 * shape.area
     for one in outlines:
         inside = angles(one)
-        assert domain.least_angle <= inside.min() and 180 - inside.max() > 0
+        assert domain.least_angle <= inside.min() and inside.max() < 180 - 1e-7
         assert inside.sum() == pytest.approx(180 * (len(one) - 2), rel=1e-9)  # once around
         assert width(one) >= least_width(domain, sets)
 
 
 @settings(max_examples=25)
 @given(domain=domains, sets=joint_sets())
-def test_contacts_and_boundary_close_every_block(domain, sets):
-    """i < j, once a pair; from i to j; the set's own normal. Lengths make up the perimeter: every
-    inner edge belongs to two blocks, every outer to one."""
+def test_contacts_close_every_block_and_points_are_found_in_them(domain, sets):
+    """i < j, once a pair and joint set; from i to j; the set's own normal. Lengths make up the
+    perimeter: every inner edge belongs to two blocks, every outer to one."""
     found = partition(domain, sets)
     contacts = found.contacts
     i, j = contacts.blocks.T
-    assert (i < j).all() and len(np.unique(contacts.blocks, axis=0)) == len(contacts)
+    laws = np.column_stack([contacts.blocks, contacts.joint_set])
+    assert (i < j).all() and len(np.unique(laws, axis=0)) == len(contacts)
     assert (np.lexsort([j, i]) == np.arange(len(i))).all()
     chord = np.diff(contacts.ends, axis=1)[:, 0]
     tangent = np.stack([-contacts.normal[:, 1], contacts.normal[:, 0]], axis=1)
@@ -121,35 +122,17 @@ def test_contacts_and_boundary_close_every_block(domain, sets):
     around = [shapely.Polygon(found.outlines.of(k)).length for k in range(found.count)]
     np.testing.assert_allclose(closed(found, 1e-8), around, rtol=1e-8)
     assert found.boundary.area.sum() == pytest.approx(rock_by_shapely(domain).length, rel=1e-9)
-
-
-@settings(max_examples=25)
-@given(domain=domains, sets=joint_sets())
-def test_points_are_found_in_their_blocks(domain, sets):
-    found = partition(domain, sets)
     np.testing.assert_array_equal(block_at(found, found.centroid), np.arange(found.count))
     assert block_at(found, np.array([[-1.0, 3.0], [5.0, 60.0]])).tolist() == [-1, -1]
     for opening in domain.openings:
         centre = np.mean(opening, axis=0)
         assert block_at(found, centre[None]).tolist() == [-1]
-    contacts = found.contacts
     inner = np.flatnonzero(contacts.joint_set >= 0)
     middle = contacts.ends[inner].mean(axis=1)
     np.testing.assert_array_equal(block_at(found, middle), contacts.blocks[inner, 0])
     # Nearer than any end: where rows nearly meet, a contact is no longer than what sets them apart.
     beside = middle + 1e-6 * contacts.area[inner, None] * contacts.normal[inner]
     np.testing.assert_array_equal(contact_at(found, beside, len(sets)), inner)
-
-
-@settings(max_examples=10)
-@given(domain=domains, sets=joint_sets())
-def test_same_seed_same_blocks_to_the_bit(domain, sets):
-    one, other = partition(domain, sets), cut(domain, sets)
-    pairs = (one, other), (one.contacts, other.contacts), (one.boundary, other.boundary)
-    for a, b in pairs:
-        for key, array in vars(a).items():
-            if isinstance(array, np.ndarray):
-                np.testing.assert_array_equal(array, vars(b)[key])
 
 
 @settings(max_examples=25)
