@@ -1,4 +1,4 @@
-"""Estimates of `--dry-run`: steps exact, sizes exact, memory within a factor."""
+"""Estimates of `--dry-run`: steps and sizes exact, memory within a factor; the cost of a step."""
 
 import json
 import tracemalloc
@@ -6,53 +6,45 @@ from types import SimpleNamespace
 
 import pytest
 
+from jointwave import cases
+from jointwave.cases.effects import effects
 from jointwave.cases.errors import SceneError
-from jointwave.cases.run_memory import estimates, refuse_beyond_memory
 from jointwave.cases.size import LIMIT
 from jointwave.compare.engines import solve
 from jointwave.compare.runs import timings
+from jointwave.compare.scenes import find
+from jointwave.compare.solvers.record import OF_BLOCK_IN_PLANE
+from jointwave.compare.studies import step_cost
 from jointwave.compare.studies.forecast import Run, forecast, forecasts
-from jointwave.compare.studies.step_cost import step_costs
+from jointwave.compare.studies.step_cost import shortened, step_costs, with_every_effect
 
 SHORT = {"time__duration": 0.01, "record__velocity": [20.25]}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}
 SCENE = "guo-li-2002/fig-03"
 
 
-def foretold(run):
-    """Return the estimate of a run."""
-    return SimpleNamespace(**forecast(run))
+def foretold(name, scene, *more, **about):
+    return SimpleNamespace(**forecast(Run("", scene, name, *more, **about)))
 
 
-def stepping(scene, name):
-    """Return the seconds of stepping that are foretold for a run."""
-    return foretold(Run("", scene, name)).stepping
-
-
-RUNS = {
-    "blocks": ("dem", {}),
-    "damped blocks": ("dem", {"joints__damping_ratio": 0.05}),
-    "blocks of fourth order": ("dem", {"numerics__dem__scheme": "fourth-order"}),
-    "blocks in space": ("dem", SPACE),
-    "jointed rock": ("continuum-jointed", {}),
-    "homogenised rock": ("continuum-equivalent", {}),
-    "implicit rock": ("continuum-jointed", {"numerics__continuum__scheme": "implicit"}),
-    "an exact solution": ("lattice", {}),
-}
-
-
-@pytest.mark.parametrize("name", RUNS)
-def test_steps_and_size_are_those_of_the_run(pillar, name):
-    engine, changes = RUNS[name]
+@pytest.mark.parametrize(
+    "engine, changes",
+    [
+        ("dem", {"numerics__dem__scheme": "fourth-order"}),
+        ("dem", SPACE),
+        ("continuum-equivalent", {}),
+        ("continuum-jointed", {"numerics__continuum__scheme": "implicit"}),
+        ("lattice", {}),
+    ],
+)
+def test_steps_and_size_are_those_of_the_run(pillar, engine, changes):
     scene = pillar(**SHORT, **changes)
-    found, result = foretold(Run("", scene, engine)), solve(engine, scene)
-    assert found.steps == result.attrs.get("steps", 0)
+    found, made = foretold(engine, scene), solve(engine, scene).attrs
+    assert found.steps == made.get("steps", 0)
     assert found.bytes > 0 and found.seconds > 0 and found.stepping is None
-    if engine == "dem":
-        assert found.size == "100 blocks"
-    elif engine.startswith("continuum-"):
-        assert found.size == f"{result.attrs['degrees_of_freedom']:,} freedoms"
-        assert found.scheme == result.attrs["scheme"]
+    rock = f"{made.get('degrees_of_freedom', 0):,} freedoms"
+    assert found.size == {"dem": "100 blocks", "lattice": "-"}.get(engine, rock)
+    assert found.scheme == made.get("scheme", "exact")
 
 
 @pytest.mark.parametrize(
@@ -74,8 +66,7 @@ def test_memory_is_what_the_arrays_take_within_a_factor_of_three(pillar, engine,
     solve(engine, scene)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert most > 2e6
-    assert most / 3 <= foretold(Run("", scene, engine)).bytes <= 3 * most
+    assert most > 2e6 and most / 3 <= foretold(engine, scene).bytes <= 3 * most
 
 
 def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypatch):
@@ -83,88 +74,68 @@ def test_a_run_beyond_the_memory_is_refused_as_the_run_would_be(pillar, monkeypa
     monkeypatch.setenv(LIMIT, "0.1")
     for name in ("dem", "continuum-jointed"):
         with pytest.raises(SceneError, match="would need about") as told:
-            foretold(Run("", scene, name))
+            foretold(name, scene)
         with pytest.raises(SceneError) as refused:
             solve(name, scene)
         assert str(told.value) == str(refused.value)
 
 
-def test_estimates_are_collected_by_their_keys(pillar):
-    with estimates() as parts:
-        refuse_beyond_memory(pillar(), {"a": 1.0, "b": 2.0})
-        refuse_beyond_memory(pillar(), {"b": 3.0, "c": 4.0})
-    refuse_beyond_memory(pillar(), {"d": 1.0})
-    assert parts == {"a": 1.0, "b": 3.0, "c": 4.0}
-
-
 @pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
 def test_time_is_that_of_the_last_run_of_the_kind(pillar, engine):
-    """Proportional to steps and size; no estimate for another kind of run."""
-    scene = pillar(**SHORT)
+    scene, other = pillar(**SHORT), pillar(**SHORT, joints__damping_ratio=0.1)
+    longer = pillar(**SHORT | {"time__duration": 0.02})
     about = dict(solve(engine, scene).attrs) | {"seconds_stepping": 2.0}
     timings.note(engine, scene, about)
-    assert stepping(scene, engine) == pytest.approx(2.0)
-    longer = pillar(**SHORT | {"time__duration": 0.02})
-    assert stepping(longer, engine) == pytest.approx(4.0, rel=0.01)
-    assert stepping(pillar(**SHORT, joints__damping_ratio=0.1), engine) is None
+    assert foretold(engine, scene).stepping == pytest.approx(2.0)
+    assert foretold(engine, longer).stepping == pytest.approx(4.0, rel=0.01)
+    assert foretold(engine, other).stepping is None
     timings.note(engine, scene, about | {"seconds_stepping": 1e-3})  # too short to tell
-    assert stepping(scene, engine) == pytest.approx(2.0)
+    assert foretold(engine, scene).stepping == pytest.approx(2.0)
     timings.note(engine, scene, about | {"seconds_stepping": 8.0, "seconds_compile": 1.0}, 11.0)
-    found = foretold(Run("", scene, engine, 3))
+    found = foretold(engine, scene, 3)
     assert found.stepping == pytest.approx(8.0) and found.setup == pytest.approx(2.0)
     assert found.seconds == pytest.approx(3 * (8.0 + 2.0))
 
 
 def test_an_exact_solution_has_the_time_of_its_own_scene(pillar):
     """Or of another one of the kind, in proportion to its waveforms."""
-    scene = pillar(**SHORT)
+    scene, longer = pillar(**SHORT), pillar(**SHORT | {"time__duration": 0.02})
     timings.note("lattice", scene, {}, 0.5)
-    assert stepping(scene, "lattice") == 0.5
-    longer = pillar(**SHORT | {"time__duration": 0.02})
-    assert stepping(longer, "lattice") == pytest.approx(1.0, rel=0.01)
-    assert stepping(pillar(**SHORT, ends__end="quiet"), "lattice") is None
+    assert foretold("lattice", scene).stepping == 0.5
+    assert foretold("lattice", longer).stepping == pytest.approx(1.0, rel=0.01)
+    assert foretold("lattice", pillar(**SHORT, ends__end="quiet")).stepping is None
     table, _ = forecasts([Run("", scene, "lattice"), Run("", scene, "images")])
     assert table.seconds[0] == 0.5 and table.stepping.isna().sum() == 1
 
 
 def test_what_was_never_timed_is_timed_on_its_first_steps(pillar):
-    scene = pillar(**SHORT)
+    scene, quiet = pillar(**SHORT), pillar(**SHORT, ends__end="quiet")
+    long = pillar(**SHORT | {"pillar__length": 5000.0, "time__duration": 1.0})
+    short = shortened(long)  # as many block-steps as asked for; its numerics otherwise its own
+    share = step_cost.UNIT_STEPS / (10_000 * foretold("dem", long).steps)
+    assert short.time.duration == pytest.approx(share) and short.interval == long.interval
     runs = [Run("", scene, name) for name in ("dem", "continuum-jointed", "lattice")]
     table, _ = forecasts(runs, spare=60.0)
     assert table.stepping.notna().all() and (table.seconds < 60).all()
-    table, _ = forecasts([Run("", pillar(**SHORT, ends__end="quiet"), "dem")])
+    table, _ = forecasts([Run("", quiet, "dem")])
     assert table.stepping.isna().all() and (table.seconds > 0).all()
+    assert forecasts([Run("", quiet, "dem", is_read=True)])[0].empty
 
 
 def test_snapshots_take_longer_and_their_files_more(pillar):
-    scene = pillar(**SHORT, record__fields=1e-3)
-    plain, shown = foretold(Run("", pillar(**SHORT), "dem")), foretold(Run("", scene, "dem"))
+    scene, plain = pillar(**SHORT, record__fields=1e-3), foretold("dem", pillar(**SHORT))
+    shown, filed = foretold("dem", scene), foretold("dem", scene, for_paraview=True)
     assert plain.stepping == shown.stepping
-    filed = foretold(Run("", scene, "dem", for_paraview=True))
     assert plain.seconds - plain.setup < shown.seconds - shown.setup < filed.seconds - filed.setup
-
-
-def test_what_is_read_costs_nothing(pillar):
-    table, _ = forecasts([Run("", pillar(**SHORT), "dem", is_read=True)])
-    assert table.empty
-
-
-def test_what_explain_measures_is_known(pillar):
-    scene = pillar(**SHORT)
-    assert stepping(scene, "dem") is None
-    (found,) = step_costs([scene])
-    assert 0 < found.ns < 1e4 and found.noise >= 0
-    told = foretold(Run("", scene, "dem"))
-    assert told.stepping > 0.5e-9 * found.ns * 100 * told.steps
 
 
 def test_a_broken_or_protected_file_of_rates_costs_nothing(pillar, tmp_path, monkeypatch):
     timings._file().write_text("[1, 2")
-    assert stepping(pillar(**SHORT), "dem") is None
+    assert foretold("dem", pillar(**SHORT)).stepping is None
     (tmp_path / "no-folder").write_text("")
     monkeypatch.setattr(timings, "_file", lambda: tmp_path / "no-folder" / "rates.json")
     timings.note("lattice", pillar(**SHORT), {}, 0.5)
-    assert stepping(pillar(**SHORT), "lattice") is None
+    assert foretold("lattice", pillar(**SHORT)).stepping is None
 
 
 @pytest.fixture
@@ -172,15 +143,15 @@ def dry(tmp_path, command):
     """Return a function that gives a command's estimates, and checks that it writes nothing."""
 
     def run(*arguments, code=0):
+        before = sorted(tmp_path.iterdir())
         said = command(*arguments, "--dry-run", code=code)
-        assert not list(tmp_path.iterdir())
+        assert sorted(tmp_path.iterdir()) == before
         return said
 
     return run
 
 
-def test_nothing_is_run_or_written(dry):
-    """For every command: only estimates are printed."""
+def test_nothing_is_run_or_written(dry, tmp_path):
     said = dry("run", SCENE, "--engine", "dem", "--engine", "continuum").out
     assert "12 would run" in said and "7,200" in said and "100 blocks" in said
     said = dry("compare", SCENE, "--variant", "").out
@@ -188,25 +159,68 @@ def test_nothing_is_run_or_written(dry):
     assert "figures: 1 in" in dry("figure", SCENE, "--variant", "", "--out", "a.pdf").out
     assert "frames: 201 in" in dry("animate", SCENE).out
     assert "2 would run" in dry("view", SCENE).out
-
-
-def test_a_fit_is_told_before_its_search(command, tmp_path):
-    curve = tmp_path / "curve.csv"
     rows = "".join(f"{i / 100},{i % 5}\n" for i in range(12))
-    curve.write_text(f"time [s],stress@20 [MPa]\n{rows}")
-    options = ("--with", curve, "--free", "load.amplitude", "--dry-run")
-    assert "20 would run" in command("fit", SCENE, *options).out
-    assert list(tmp_path.iterdir()) == [curve]
+    (tmp_path / "curve.csv").write_text(f"time [s],stress@20 [MPa]\n{rows}")
+    options = ("--with", "curve.csv", "--free", "load.amplitude")
+    assert "20 would run" in dry("fit", SCENE, *options).out
 
 
-def test_every_point_of_a_sweep_is_told_and_which_would_fail(dry):
+def test_what_would_fail_is_told(dry):
     options = ("--sweep", "joints.damping_ratio=-1,0.1", "--variant", "", "--json")
     facts = json.loads(dry("run", SCENE, *options).out)
     assert [run["point"] for run in facts["runs"]] == ["joints.damping_ratio=0.1"]
     (failing,) = facts["failing"]
     assert "must be at least 0" in failing["message"]
-
-
-def test_a_scene_that_cannot_run_is_one_line(dry):
     said = dry("run", SCENE, "--set", "numerics.dem.step_fraction=1.5", code=2).err
     assert said.count("\n") == 1 and "critical step" in said
+
+
+def test_the_least_of_runs_in_turns_counts_and_is_known(monkeypatch):
+    """Whatever else the machine does meanwhile: runs of six turns take three times as long, and
+    the median with them."""
+    turns, solve = [], step_cost.solve
+    costs = {100: 2e-9, 50: 3e-8}
+
+    def slowed(name, scene):
+        result, blocks = solve(name, scene), scene.block_count
+        turn = turns.count(blocks)
+        turns.append(blocks)
+        steps = result.attrs["steps"] * blocks
+        result.attrs["seconds_stepping"] = costs[blocks] * steps * (3 if turn in range(2, 8) else 1)
+        return result
+
+    monkeypatch.setattr(step_cost, "solve", slowed)
+    scenes = [cases.load_variant(find(SCENE), "", {"pillar.length": x}) for x in (50.0, 25.0)]
+    found = [x for cost in step_costs(scenes) for x in cost]
+    assert found == pytest.approx([2.0, 4.0, 30.0, 60.0])
+    assert turns == [100, 50] * 11
+    told = foretold("dem", scenes[1])
+    assert told.stepping == pytest.approx(30e-9 * 50 * told.steps, rel=0.2)
+
+
+def test_every_effect_is_measured_once_in_as_many_blocks(monkeypatch):
+    """A step has a cost of its own, which few blocks share; a thousand hardly feel it."""
+    timed = []
+    monkeypatch.setattr(step_cost, "_every_effect", {})
+    monkeypatch.setattr(step_cost, "step_costs", lambda some: timed.extend(some) or [len(timed)])
+    for blocks, count in ((2, 1), (2, 1), (100, 2), (10**4, 3)):
+        changes = {"pillar.length": 0.5 * blocks, "record.stress": [0.0]}
+        scene = cases.load_variant(find(SCENE), "", changes)
+        assert step_cost.cost_of_every_effect(scene) == count
+    assert [one.block_count for one in timed] == [2, 100, 1000]
+
+
+def test_every_effect_that_can_be_beside_others_is_there():
+    """In a rock mass all but periodic and roller sides and, since blocks are rigid, a quality
+    factor; in a pillar also but those that exclude others of it."""
+    pillar = with_every_effect(cases.load_variant(find(SCENE)))
+    off = {one.name for one in effects(pillar) if not one.active}
+    excluded = {"no tension", "rate and state", "fixed ends", "prestress", "shaken base"}
+    other = {"segments", "scatter", "field output", "local damping", "constant Q"}
+    assert off == excluded | other
+    mass = cases.load_variant(find("rock-mass/brickwork"))
+    lattice = with_every_effect(mass)
+    off = {one.name for one in effects(lattice) if not one.active}
+    assert off == {"periodic sides", "roller sides", "field output", "constant Q"}
+    blocks = step_cost.solver("dem").prepare(mass).freedoms // OF_BLOCK_IN_PLANE
+    assert 0.5 * blocks < lattice.domain.size[0] ** 2 <= blocks or blocks > step_cost.BLOCKS
