@@ -1,9 +1,10 @@
-"""Joint sets of a rock mass in numbers: dashpots, strength under a prestress, and what they make of
-the dashpots of quiet sides."""
+"""Joints in numbers: dashpots, strength under a prestress, closure by roughness and the stress in
+reach of a scene, and what joints make of the dashpots of quiet sides."""
 
 import numpy as np
 import pytest
 
+from jointwave.cases.material.closure import bandis_closure, stress_in_reach
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rock_mass import beyond_strength, set_time_constants
 from jointwave.cases.schema.joint import JointSet
@@ -69,9 +70,8 @@ def test_a_joint_holds_or_fails_as_its_strength_says(stress, law, found):
     keys |= {"dip_direction": 90.0, "through": [0.0, 0.0, 0.0]}
     beside = {"xx": stress["xx"], "yy": 9e6, "zz": stress["yy"]}
     joint = JointSet.model_validate(keys, context=space)
-    assert (
-        beyond_strength(joint, InSituStress.model_validate(beside, context=space).tensor) == found
-    )
+    stress = InSituStress.model_validate(beside, context=space)
+    assert beyond_strength(joint, stress.tensor) == found
 
 
 @pytest.mark.parametrize("size", [[40.0, 30.0], [40.0, 30.0, 20.0]])
@@ -83,3 +83,41 @@ def test_joints_along_a_quiet_side_soften_the_rock_beyond_it(rock_with, size):
     found = impedances(scene, -np.eye(len(size))[-1:], np.array([-1]))
     tensor = np.diag(np.append(np.full(len(size) - 1, expected[1]), expected[0]))
     np.testing.assert_allclose(found, [tensor], rtol=1e-12, atol=1e-9 * expected[0])
+
+
+def test_a_joint_by_bandis():
+    """JRC 10, JCS 100 MPa, sigma_c 150 MPa: a = 2 (0.3 - 0.1) = 0.4 mm, JCS / a = 250,
+    k_ni = -7.15 + 17.5 + 5 = 15.35 MPa/mm, d_m = -0.1772 + 1.135 * 250^-0.251 = 0.10667 mm."""
+    found = bandis_closure(10.0, 100e6, 150e6)
+    assert found == pytest.approx((4e-4, 15.35e9, 1.06666e-4), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("roughness", "wall", "rock", "name"),
+    [(4.9, 100e6, 150e6, "JRC"), (10.0, 160e6, 150e6, "JCS"), (15.0, 22e6, 180e6, "aperture")],
+)
+def test_joints_beyond_what_was_measured_are_refused(roughness, wall, rock, name):
+    with pytest.raises(ValueError, match=name):
+        bandis_closure(roughness, wall, rock)
+
+
+CLOSES = {"joints.maximum_closure": 1e-3}
+#: Twice the peak, the prestress, and the weight of the whole pillar; of a shaken base twice the
+#: impedance of intact rock times the velocity, of an acceleration its integral over half a sine.
+PRESSED_DOWN = {"prestress": {"normal": 3e6}, "ends": {"end": "fixed"}}
+PRESSED_DOWN |= {"gravity": {"direction": [0, 1, 0], "acceleration": 10.0}}
+SHAKEN = {"load.amplitude": 0.1, "load.period": 0.01, "ends": {"start": "fixed"}}
+SPEED = 2 * 0.1 * np.sqrt(8.64e10 * 2400)
+
+
+@pytest.mark.parametrize(
+    ("changes", "stress"),
+    [
+        ({}, 2e6),
+        (PRESSED_DOWN, 2e6 + 3e6 + 2400 * 10 * 50),
+        (SHAKEN | {"load.quantity": "velocity"}, SPEED),
+        (SHAKEN | {"load.quantity": "acceleration"}, SPEED * 0.01 / np.pi),
+    ],
+)
+def test_stress_in_reach(scene_with, changes, stress):
+    assert stress_in_reach(scene_with(**CLOSES, **changes)) == pytest.approx(stress, rel=1e-6)

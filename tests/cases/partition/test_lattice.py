@@ -173,14 +173,11 @@ def test_a_thin_plate_in_space_is_cut_as_the_plane_is(scene, sets, poisson, held
     keys = dict(zip(("left", "right", "bottom", "top"), held, strict=True))
     keys |= {"poisson": poisson, "width": 0.02}
     each = [{"dip": dip, "spacing": 3.0} if many else {"dip": dip} for dip, many in sets]
-    plane = scene(*(one | {"through": [5.0, 4.0]} for one in each), **keys)
-    turned = [
-        one | {"dip": abs(one["dip"]), "dip_direction": 270.0 if one["dip"] >= 0 else 90.0}
-        for one in each
-    ]
-    sets = [one | {"through": [5.0, 0.0, 4.0]} for one in turned]
-    plate = cut(scene(*sets, size=(12.0, 0.5, 10.0), **keys))
-    found = cut(plane)
+    found = cut(scene(*(one | {"through": [5.0, 4.0]} for one in each), **keys))
+    for one in each:
+        one |= {"dip_direction": 270.0 if one["dip"] >= 0 else 90.0, "through": [5.0, 0.0, 4.0]}
+        one["dip"] = abs(one["dip"])
+    plate = cut(scene(*each, size=(12.0, 0.5, 10.0), **keys))
     assert np.sort(plate.volume) == pytest.approx(0.5 * np.sort(found.volume), rel=1e-6)
     for k in range(len(sets)):
         areas = [one.contacts.area[one.contacts.joint_set == k].sum() for one in (plate, found)]
