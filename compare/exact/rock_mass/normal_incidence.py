@@ -148,18 +148,17 @@ class NormalField:
     """
 
     def __init__(self, scene: RockMass, which: int = 0) -> None:
-        extent = float(np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0)))
+        met = [NormalWave.of(scene, one) for one in sorted(scene.waves, key=lambda one: one.kind)]
+        extent = np.linalg.norm(np.ptp(np.array(scene.domain.corners), axis=0))
+        end = scene.time.duration + float(extent) / min(one.wave.speed for one in met)
         self.parts: list[tuple[NormalWave, Any]] = []
-        pressed = Pressed()
-        for one in sorted(scene.waves, key=lambda one: one.kind):  # P before S
-            met = NormalWave.of(scene, one)
-            end = scene.time.duration + extent / met.wave.speed
-            if one.kind == "P":
-                passed: Any = _closing(scene, met, end, which)
-                pressed = _pressed(passed, met)
+        for one, kind in zip(met, sorted(each.kind for each in scene.waves), strict=True):
+            if kind == "P":
+                passed: Any = _closing(scene, one, end - one.arrival, which)
             else:
-                passed = _slipping(scene, met, end, which, pressed)
-            self.parts.append((met, passed))
+                pressed = _pressed(one, *self.parts[0]) if self.parts else Pressed()
+                passed = _slipping(scene, one, end - one.arrival, which, pressed)
+            self.parts.append((one, passed))
 
     def motion(self, points: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return displacement and velocity [m, d, n], and stress [m, components, n] in Pa, tension
@@ -195,10 +194,11 @@ def _closing(scene: RockMass, met: NormalWave, end: float, which: int) -> closin
     return closing_joint.Passed(closes, met.impedance, met.load, end, tolerance)
 
 
-def _pressed(passed: closing_joint.Passed, met: NormalWave) -> Pressed:
-    """Return what a P wave adds to the pressure on the joint, over the time of the scene."""
-    breaks = [t + met.arrival for t in met.load.breaks]
-    return Pressed(lambda t: passed.with_rate(np.asarray(t) - met.arrival), breaks)
+def _pressed(shears: NormalWave, met: NormalWave, passed: closing_joint.Passed) -> Pressed:
+    """Return what a P wave adds to the pressure on the joint, over the time of an S wave there."""
+    late = shears.arrival - met.arrival
+    breaks = [t - late for t in met.load.breaks]
+    return Pressed(lambda t: passed.with_rate(np.asarray(t) + late), breaks)
 
 
 def _slipping(
@@ -207,13 +207,8 @@ def _slipping(
     """Return what of an S wave passes the joint of a scene, up to `end` (s)."""
     normal, shear, _ = carried(scene, met.wave)
     joint = slip_joint(scene.joint_sets[0], normal, shear, met.y)
-    own = Pressed(
-        lambda t: pressed.of(np.asarray(t) + met.arrival), [t - met.arrival for t in pressed.breaks]
-    )
     tolerance = slip_phases.TOLERANCES[which]
-    return slip_phases.Passed(
-        joint, met.impedance, met.load, end, tolerance, pressed=own if pressed.breaks else pressed
-    )
+    return slip_phases.Passed(joint, met.impedance, met.load, end, tolerance, pressed=pressed)
 
 
 def _motion(
