@@ -82,13 +82,6 @@ def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
     assert '<p class="fails">' in html and "It is not so.</p>" in html
 
 
-def test_solutions_and_pairs_of_them_are_in_words(page):
-    index = pd.Index(["dem ~ jointed-bar", "lab.csv ~ continuum-jointed"], name="pair")
-    html = page(summary=pd.DataFrame({"fig. 2 (%)": [0.5, 1.0], "of": ["lattice", "no"]}, index))
-    assert "rigid blocks ~ jointed bar, exact" in html and "lab.csv ~ jointed rock" in html
-    assert "<td>rigid blocks, exact</td>" in html
-
-
 def test_text_of_scenes_is_escaped(page, scene):
     html = page(scenes=[scene(title="<b>a & b</b>", toml="x = '<i></script>'")])
     assert "&lt;b&gt;a &amp; b&lt;/b&gt;" in html and "&lt;i&gt;&lt;/script&gt;" in html

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.figures.animation.settings import STRESS, VELOCITY, round_down, settings_for
+from jointwave.compare.figures.animation.settings import STRESS, VELOCITY, settings_for
 
 IN_SPACE = {"load__direction": [1.0, 0.0, 0.0]}
 LONG = {"pillar__length": 30.0}
@@ -19,13 +19,6 @@ def scene(pillar):
         return pillar(**(keys | changes))
 
     return made
-
-
-@pytest.mark.parametrize(
-    ("value", "round_one"), [(1, 1), (1.99, 1), (2, 2), (49, 20), (5e3, 5e3), (0.7, 0.5)]
-)
-def test_scales_are_round(value, round_one):
-    assert round_down(value) == pytest.approx(round_one)
 
 
 def step(size):
