@@ -10,15 +10,14 @@ E. Kjartansson, Constant Q wave propagation and attenuation, J. Geophys. Res. 84
 """
 
 from dataclasses import dataclass
-from math import atan, cos, pi, tan
+from math import atan, pi, tan
 
 import numpy as np
 
 
 @dataclass(frozen=True)
 class ConstantQ:
-    """What `compare.exact.bar.transfer.Bar.relaxation` takes, of a quality factor at every
-    frequency and a reference frequency, Hz."""
+    """Rock of one quality factor at every frequency, and a reference frequency, Hz."""
 
     quality: float
     reference: float
@@ -27,11 +26,6 @@ class ConstantQ:
     def gamma(self) -> float:
         """The exponent of the phase speed."""
         return atan(1 / self.quality) / pi
-
-    def modulus(self, s: np.ndarray) -> np.ndarray:
-        """Return M over rho c_0^2 at Laplace variables s, 1/s."""
-        scaled = np.asarray(s, dtype=complex) / (2 * pi * self.reference)
-        return cos(pi * self.gamma / 2) ** 2 * scaled ** (2 * self.gamma)
 
     def phase_speed(self, frequency: np.ndarray) -> np.ndarray:
         """Return c over c_0 at frequencies, Hz."""

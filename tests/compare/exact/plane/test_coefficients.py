@@ -162,15 +162,6 @@ def test_no_joint_and_free_faces(kind):
     assert np.abs(at(1e-10) - at(0.0)).max() < 1e-12
 
 
-def test_a_lubricated_joint_passes_no_shear(rock):
-    """K_s = 0, K_n = inf: the waves behind carry no shear stress, X T_p + C T_s = 0."""
-    angle = np.radians(35.0)
-    *_, T_p, T_s = coefficients("P", angle, OMEGA, rock, [Joint(np.inf, 0.0)], [])
-    s = np.sin(angle) / np.sqrt(3)
-    shear = 2 * s * np.cos(angle) * T_p + (1 - 2 * s**2) * T_s
-    assert abs(shear) < 1e-15 and abs(T_s) > 0.1
-
-
 def test_joints_far_apart_in_evanescent_waves(rock, joint):
     """P waves decayed by e^-2000 between the joints neither overflow nor matter: two joints of SV
     alone are a Fabry-Perot of their T_s and R_s."""

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from closed_forms.slipping_joint import slipping_joint
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.engines import applies, solve
@@ -34,17 +33,6 @@ def test_a_strong_joint_and_one_that_hardly_closes_are_linear(
         one, other = found[name].values, linear[name].values
         size = np.abs(linear[moves if name == still else name].values).max()
         assert np.abs(one - other).max() <= bound * size, name
-
-
-def test_a_joint_that_slips_moves_as_it_does_marched_in_time(straight):
-    """By Heun's method in steps of 4e-6 s, for waves at any angle; it has the wave reach its
-    strength up to a step late, which changes velocity by a part omega dt = 5e-3 there."""
-    scene = straight({"friction_angle": 0.0, "cohesion": 4e5}, {"kind": "S"})
-    found, points = solve("normal-incidence", scene), np.array(scene.record.points)
-    marched = slipping_joint(scene, points, found.time.values)
-    assert np.abs(found.slip).max() > 1e-4
-    size = np.abs(marched).max()
-    assert np.abs(found.velocity.values - marched).max() <= 5e-3 * size
 
 
 def marched_in_time(scene, times):
