@@ -7,13 +7,15 @@ from scipy.sparse import csr_matrix, diags
 
 from jointwave.cases.read import load_tables
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.space.compat import cell_nodes
+from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import Body
 
 STIFFNESS = 2e10, 8e9  # of joints along the normal and in shear, Pa/m
 LAME, SHEAR = 5e10 * 0.2 / (1.2 * 0.6), 5e10 / 2.4  # of the rock, Pa
 
-BLOW = {"shape": "sine", "amplitude": 1e5, "period": 1e-3}  # on a pillar
+#: On top of a rock mass, and on a pillar.
+PUSH = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
+BLOW = {"shape": "sine", "amplitude": 1e5, "period": 1e-3}
 
 
 def rock_mass(*joints, dim=2, continuum=None, **tables) -> RockMass:
@@ -61,6 +63,4 @@ def pushed(body: Body, stress: np.ndarray) -> np.ndarray:
 
 def of_blocks(body: Body, motion: np.ndarray) -> np.ndarray:
     """Return the displacement of nodes [nodes, d] of motions of their blocks [blocks, d]."""
-    found = np.empty((len(body.x), motion.shape[1]))
-    found[cell_nodes(body.space)] = motion[body.block][:, None]
-    return found
+    return motion[blocks_of_nodes(body)]

@@ -1,4 +1,5 @@
-"""Pillars in gmsh files: blocks between joints of any slope, their vertices once or twice."""
+"""Pillars in gmsh files, blocks between joints of any slope, their vertices once or twice; and
+squares of rock with lines of joints."""
 
 from itertools import pairwise
 
@@ -51,16 +52,12 @@ def drawn(
         if ends:
             groups |= {"start": faces[0.0, 0.0], "end": faces[length, length]}
         for name, tags in groups.items():
-            model.setPhysicalName(dim - 1, model.addPhysicalGroup(dim - 1, tags), name)
-        rock = model.addPhysicalGroup(dim, [tag for _, tag in model.getEntities(dim)])
-        model.setPhysicalName(dim, rock, "Rock mass")
+            grouped(gmsh, dim - 1, name, tags)
+        grouped(gmsh, dim, "Rock mass", [tag for _, tag in model.getEntities(dim)])
         model.mesh.generate(dim)
         model.mesh.setOrder(order)
-        for key, value in {
-            "MshFileVersion": version,
-            "Binary": binary,
-            "SaveAll": save_all,
-        }.items():
+        how = {"MshFileVersion": version, "Binary": binary, "SaveAll": save_all}
+        for key, value in how.items():
             gmsh.option.setNumber(f"Mesh.{key}", value)
         gmsh.write(str(path))
     return path
@@ -112,10 +109,45 @@ def _faces_across(model, dim, side):
         x = np.array([model.getValue(0, t, []) for t in points])
         spans = np.ptp(x, axis=0)
         if np.isclose(spans[0], side) and (dim == 2 or np.isclose(spans[2], side)):
-            yield (
-                tag,
-                tuple(
-                    float(np.round(x[np.isclose(x[:, 0], s), 1][0], 6))
-                    for s in (-side / 2, side / 2)
-                ),
-            )
+            ends = (x[np.isclose(x[:, 0], s), 1][0] for s in (-side / 2, side / 2))
+            yield tag, tuple(float(np.round(y, 6)) for y in ends)
+
+
+def grouped(gmsh, dim, name, tags):
+    """Return the number of a new group of this name."""
+    group = gmsh.model.addPhysicalGroup(dim, tags)
+    gmsh.model.setPhysicalName(dim, group, name)
+    return group
+
+
+def crossed(path, joints, low, high, hole=None, size=0.5, version=4.1, quads=False, crack=False):
+    """Let gmsh mesh a square from low to high with lines of joints in it, given by their points and
+    by name, and with a round hole of 1 m around a place."""
+    with gmsh_session() as gmsh:
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        occ = gmsh.model.occ
+        square, lines = [(2, occ.addRectangle(low, low, 0, high - low, high - low))], {}
+        if hole is not None:
+            square, _ = occ.cut(square, [(2, occ.addDisk(*hole, 0, 1.0, 1.0))])
+        tools = []
+        for name, points in joints.items():
+            ends = [occ.addPoint(x, y, 0) for x, y in points]
+            own = [(1, occ.addLine(a, b)) for a, b in pairwise(ends)]
+            lines[name] = range(len(tools), len(tools) + len(own))
+            tools += own
+        _, children = occ.fragment(square, tools)
+        occ.synchronize()
+        grouped(gmsh, 2, "rock", [tag for dim, tag in gmsh.model.getEntities(2)])
+        for name, own in lines.items():
+            tags = [tag for k in own for _, tag in children[len(square) + k]]
+            group = grouped(gmsh, 1, name, tags)
+        if quads:
+            gmsh.option.setNumber("Mesh.RecombineAll", 1)
+            gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
+        gmsh.model.mesh.generate(2)
+        if crack:
+            gmsh.plugin.setNumber("Crack", "Dimension", 1)
+            gmsh.plugin.setNumber("Crack", "PhysicalGroup", group)
+            gmsh.plugin.run("Crack")
+        gmsh.write(str(path))

@@ -17,14 +17,13 @@ from jointwave.continuum.run import simulate
 from jointwave.continuum.space.fenicsx import PETSc, shared_by
 from jointwave.continuum.stepping import product
 from tests.conftest import Checkpointer
-from tests.continuum.bodies import rock_mass
+from tests.continuum.bodies import PUSH, rock_mass
 
 SAMPLES = 41
 WHOLE = product.CACHE
 #: Scenes whose product, in three processes, reads half of a matrix as that of large ones does.
 HALVED = ("plane", "space")
 WEAK = {"friction_angle": 30.0, "cohesion": 1e4, "tensile_strength": 5e4, "fracture_energy": 1.0}
-LOAD = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
 BASE = {
     "kind": "base", "side": "bottom", "direction": [0.6, 0.8], "quantity": "velocity",
     "shape": "sine", "amplitude": 0.01, "period": 1e-3,
@@ -38,7 +37,7 @@ def scene(*joints, dim=2, scheme="explicit", continuum=None, **tables) -> RockMa
     table: dict[str, Any] = {
         "time": {"duration": 1e-3},
         "record": record | {"interval": 1e-3 / (SAMPLES - 1)},
-        "loads": [LOAD],
+        "loads": [PUSH],
         "boundaries": {"bottom": "fixed", "left": "quiet", "right": "quiet"},
     }
     own = {"size": 1.0, "scheme": scheme, **(continuum or {})}

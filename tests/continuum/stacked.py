@@ -1,7 +1,7 @@
 """Stacks of equal boxes with joints between them: bodies for tests of steps."""
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix
 
 from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.cut import cut, planes_of
@@ -10,7 +10,10 @@ from jointwave.continuum.mesh.boxes import box_mesh, boxes_of
 from jointwave.continuum.mesh.conforming import Marks
 from jointwave.continuum.space.build import Elements
 from jointwave.continuum.space.rock import elastic, isotropic
-from jointwave.continuum.stepping.problem import Readings
+from jointwave.continuum.stepping.problem import Problem, Readings
+from jointwave.joints.law import law
+
+NORMAL, SHEAR = 3.0, 2.0  # stiffness of joints
 
 
 def stack(dim, count, cells, across=1, order=2, modulus=2.0, poisson=0.25):
@@ -36,33 +39,31 @@ def stack(dim, count, cells, across=1, order=2, modulus=2.0, poisson=0.25):
     return elements.body(isotropic(elements.space, 1.0, lame, shear))
 
 
-def stiff_joints(body, normal, shear):
-    """Return B^T W k B of the joints of a body."""
+def readings(body, nodes=()):
+    """Return readings of the motion of nodes."""
     dim = body.components
-    k = np.array([normal] + [shear] * (dim - 1))
-    weights = (body.joints.weight[:, None] * k).ravel()
-    return csr_matrix(body.joints.matrix.T @ diags(weights) @ body.joints.matrix)
+    points = 0 if body.joints is None else len(body.joints.weight)
+    freedom = (dim * np.array(nodes, int)[:, None] + np.arange(dim)).ravel()
+    rows = np.arange(freedom.size)
+    motion = csr_matrix((np.ones(freedom.size), (rows, freedom)), (rows.size, dim * len(body.x)))
+    none, of_points = csr_matrix((0, dim * len(body.x))), csr_matrix((0, dim * points))
+    return Readings(motion, none, np.zeros(0), of_points, np.zeros(0), of_points)
 
 
-def readings(body, nodes=(), points=()):
-    """Return readings of the motion of nodes, and of traction and jump at points of joints."""
-    dim = body.components
-    count = 0 if body.joints is None else len(body.joints.weight)
-
-    def rows(numbers, size, values=None):
-        column = (dim * np.array(numbers, int)[:, None] + np.arange(dim)).ravel()
-        value = np.ones(column.size) if values is None else np.repeat(values, dim)
-        return csr_matrix((value, (np.arange(column.size), column)), (column.size, dim * size))
-
-    area = None if not len(points) else 1 / body.joints.weight[list(points)]
-    return Readings(
-        motion=rows(nodes, len(body.x)),
-        stress=csr_matrix((0, dim * len(body.x))),
-        constant=np.zeros(0),
-        traction=rows(points, count, area),
-        carried=np.zeros(dim * len(points)),
-        jump=rows(points, count),
+def joined(count, shear=True, eta=None, **strengths):
+    """Return the law of this number of joints."""
+    every = np.ones(count)
+    return law(
+        NORMAL * every,
+        None if eta is None else eta * every,
+        strengths.pop("tension", every == 1),
+        shear_stiffness=SHEAR * every if shear else None,
+        **{name: value * every for name, value in strengths.items()},
     )
+
+
+def problem(body, own=None, nodes=(), **acts):
+    return Problem(body, readings(body, nodes), own, (NORMAL, SHEAR), **acts)
 
 
 class Force:

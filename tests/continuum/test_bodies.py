@@ -1,18 +1,11 @@
-"""Joints that end in rock, periodic sides, pillars, rock of a script, and refusals in one line."""
+"""Joints that end in rock, periodic sides, equal blocks, and refusals in one line."""
 
-import dolfinx.fem.petsc
 import numpy as np
 import pytest
-import ufl
-from dolfinx import fem
-from scipy.sparse.linalg import spsolve
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.calibrate import calibrate
-from jointwave.continuum.scene import body_of
-from jointwave.continuum.space import rock
 from jointwave.continuum.space.compat import cell_nodes
-from tests.continuum.bodies import LAME, SHEAR, springs
+from tests.continuum.bodies import springs
 
 SMALL = 1e-9  # of the stiffness: the eigenvalues of rigid motions
 HALF = {"regions": [{"name": "upper", "dip": 0.0, "through": [0.0, 2.1]}]}
@@ -46,12 +39,6 @@ def test_a_joint_of_one_element_within_rock_is_told(made, caplog):
     opens = made(joint, continuum={"size": 0.6}, regions=regions).body
     assert np.allclose(opens.joints.place, [[3.0, 2.0]] * 2)
     assert np.isclose(opens.joints.weight.sum(), 0.5)
-
-
-def test_without_springs_each_block_moves_alone(made):
-    body = made({"dip": 30.0, "through": [3.0, 2.0]}, continuum={"size": 2.0}).body
-    assert rigid_motions(body.stiffness) == 6
-    assert rigid_motions(body.stiffness + springs(body)) == 3
 
 
 @pytest.mark.parametrize("cell", ["triangle", "quadrilateral"])
@@ -112,99 +99,6 @@ def test_blocks_that_are_alike_have_the_same_mesh(made):
     for one in others:
         away = np.linalg.norm(first[:, None] - one, axis=2).min(axis=1)
         assert len(one) == len(first) and away.max() < 1e-12
-
-
-def test_the_equivalent_rock_has_no_joints_of_a_spacing(made):
-    one, other = {"dip": 20.0, "spacing": 1.5}, {"dip": 70.0, "through": [3.0, 2.0]}
-    found = made(one, other, model="equivalent")
-    assert [single.name for single in found.scene.joint_sets] == ["set 1"]
-    assert found.blocks.count == 2
-
-
-@pytest.mark.parametrize(("dim", "order"), [(2, 1), (2, 3), (3, 2)])
-def test_matrices_are_those_that_dolfinx_assembles(made, dim, order):
-    """The same forms, written by hand on the body's space; in boxes all rules are exact to the
-    order that they state."""
-    dip = {"dip": 0.0, "spacing": 2.0}
-    body = made(dip, dim=dim, continuum={"order": order, "size": 2.0}).body
-    u, v = ufl.TrialFunction(body.space), ufl.TestFunction(body.space)
-    rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    strain = ufl.sym(ufl.grad(u))
-    stress = LAME * ufl.tr(strain) * ufl.Identity(dim) + 2 * SHEAR * strain
-    for form, own in (
-        (ufl.inner(stress, ufl.sym(ufl.grad(v))), body.stiffness.toarray()),
-        (2600.0 * ufl.inner(u, v), np.diag(body.mass)),
-    ):
-        found = dolfinx.fem.petsc.assemble_matrix(fem.form(form * ufl.dx(metadata=rule)))
-        found.assemble()
-        expected = found.convert("dense").getDenseArray().real
-        assert np.abs(own - expected).max() < 1e-13 * np.abs(expected).max()
-
-
-def test_a_script_gives_its_own_rock(made):
-    """Rock that stiffens with depth, in UFL: its energy in a uniform strain."""
-
-    def deep(scene, space):
-        x = ufl.SpatialCoordinate(space.mesh)
-        return rock.isotropic(space, 2600.0, 0.0 * x[0], 1e10 * (1 + (4.0 - x[1])), 1e-4)
-
-    body = made({"dip": 0.0, "through": [3.0, 1.0]}, rock=deep).body
-    u = (body.x * [1e-4, 0.0]).ravel()
-    assert np.isclose(u @ body.stiffness @ u, 2 * 1e10 * 1e-8 * 6.0 * (4.0 + 8.0), rtol=1e-12)
-    away = np.abs(body.damping - 1e-4 * body.stiffness).max()
-    assert away < 1e-14 * np.abs(body.damping).max()
-
-
-@pytest.mark.parametrize(
-    ("changes", "dim", "components"),
-    [
-        ({}, 1, 1),
-        ({"load__direction": [1.0, 0.0, 0.0], "motion": {"rotation": "none"}}, 1, 3),
-        ({"load__direction": [1.0, 0.0, 0.0]}, 2, 2),
-        ({"load__direction": [0.0, 0.0, 1.0]}, 3, 3),
-        ({"numerics__continuum__dim": 2}, 2, 2),
-        ({"numerics__continuum__dim": 2, "numerics__continuum__cell": "simplex"}, 2, 2),
-    ],
-)
-def test_a_pillar_has_as_many_dimensions_as_its_motion_asks_for(pillar, changes, dim, components):
-    keys = {"numerics__continuum__elements_per_block": 2, "rock__intact_modulus": 5e10} | changes
-    scene = pillar(**keys)
-    found = body_of(scene)
-    body, p = found.body, calibrate(scene)
-    assert (body.x.shape[1], body.components) == (dim, components)
-    area = scene.pillar.side ** (dim - 1)
-    mass = p.density * area * scene.pillar.length
-    assert np.allclose(body.mass.reshape(-1, components).sum(axis=0), mass, rtol=1e-12)
-    assert np.isclose(body.sides["start"].weight.sum(), area, rtol=1e-12)
-    assert np.allclose(body.sides["end"].normal[:, components // 2], 1.0)
-    joints = body.joints
-    axis = min(1, components - 1)
-    assert np.allclose(joints.frame[:, 0, axis], 1.0)
-    assert np.allclose(joints.place[:, dim // 2], p.joint_y[joints.column], atol=1e-12)
-    weight = np.bincount(joints.column, joints.weight)
-    assert np.allclose(weight, area, rtol=1e-12) and len(weight) == p.block_count - 1
-    along = np.zeros((len(body.x), components))
-    along[:, axis] = body.x[:, dim // 2]
-    stored = along.ravel() @ body.stiffness @ along.ravel()  # of terms (length over element)^2
-    modulus = 5e10 if dim == 1 else found.materials[0].stiffness[1, 1]
-    assert np.isclose(stored, modulus * area * scene.pillar.length, rtol=1e-10)
-
-
-@pytest.mark.parametrize("order", [1, 4])
-def test_a_layer_of_a_thickness_is_soft_rock(pillar, order):
-    """A bar under a stress at its end is longer by its rock and by the layer's own compliance."""
-    layer = {"y": 20.0, "normal_stiffness": 1e8, "thickness": 0.2}
-    keys = {"soft_layers": [layer], "numerics__continuum": {"order": order}}
-    scene = pillar(**keys)
-    found = body_of(scene, "equivalent")
-    body, modulus, length = found.body, calibrate(scene).modulus, scene.pillar.length
-    assert body.joints is None
-    assert np.isclose(found.blocks.volume[found.blocks.body.region == 1].sum(), 0.2)
-    start, end = body.sides["start"].node, body.sides["end"].node
-    free = np.setdiff1d(np.arange(len(body.x)), start)
-    u = spsolve(body.stiffness[free][:, free].tocsc(), (free == end) * 1e6)
-    expected = 1e6 * ((length - 0.2) / modulus + 1 / 1e8)
-    assert np.isclose(u[free == end], expected, rtol=1e-9)
 
 
 def test_mistakes_are_told_in_one_line(made):

@@ -1,7 +1,6 @@
 """Rock masses on meshes of users: files that gmsh has made, with joints at any angle and shape."""
 
 import re
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -14,12 +13,11 @@ from jointwave.continuum.loads.forces import pushes
 from jointwave.continuum.mesh.session import gmsh_session
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
-from jointwave.continuum.space.compat import cell_nodes
 from jointwave.results.dataset import energy_residual
-from tests.continuum.bodies import LAME, SHEAR, STIFFNESS, pushed, springs
+from tests.continuum.bodies import springs
+from tests.continuum.drawing import crossed, grouped
 
 SIZE = 10.0  # m, of the square
-STRESS = np.array([[-3e6, 7e5], [7e5, -1e6]])  # Pa, tension positive
 
 SCENE = """
 title = "a mesh"
@@ -41,40 +39,6 @@ NATIVE = SCENE.replace('{ mesh = "rock.msh" }', "{ size = [10.0, 10.0] }")
 NATIVE += "through = [5.0, 5.0]\n"
 
 
-def drawn(path, joints, hole=None, size=0.5, version=4.1, quads=False, crack=False):
-    """Let gmsh mesh the square with lines of joints in it, given by their points and by name."""
-    with gmsh_session() as gmsh:
-        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        gmsh.option.setNumber("Mesh.MshFileVersion", version)
-        occ = gmsh.model.occ
-        square, lines = [(2, occ.addRectangle(0, 0, 0, SIZE, SIZE))], {}
-        if hole is not None:
-            square, _ = occ.cut(square, [(2, occ.addDisk(*hole, 0, 1.0, 1.0))])
-        tools = []
-        for name, points in joints.items():
-            ends = [occ.addPoint(x, y, 0) for x, y in points]
-            own = [(1, occ.addLine(a, b)) for a, b in pairwise(ends)]
-            lines[name] = range(len(tools), len(tools) + len(own))
-            tools += own
-        _, children = occ.fragment(square, tools)
-        occ.synchronize()
-        rock = [tag for dim, tag in gmsh.model.getEntities(2)]
-        gmsh.model.setPhysicalName(2, gmsh.model.addPhysicalGroup(2, rock), "rock")
-        for name, own in lines.items():
-            tags = [tag for k in own for _, tag in children[len(square) + k]]
-            group = gmsh.model.addPhysicalGroup(1, tags)
-            gmsh.model.setPhysicalName(1, group, name)
-        if quads:
-            gmsh.option.setNumber("Mesh.RecombineAll", 1)
-            gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
-        gmsh.model.mesh.generate(2)
-        if crack:
-            gmsh.plugin.setNumber("Crack", "Dimension", 1)
-            gmsh.plugin.setNumber("Crack", "PhysicalGroup", group)
-            gmsh.plugin.run("Crack")
-        gmsh.write(str(path))
-
-
 def through(dip):
     """Return the ends of a joint through the middle of the square, on its sides."""
     half = SIZE / 2 * np.tan(np.radians(dip))
@@ -86,11 +50,8 @@ def given(tmp_path):
     """Return a function that gives the scene on a mesh that gmsh makes as it is asked to."""
 
     def scene(joints=None, text=SCENE, **asked):
-        drawn(
-            tmp_path / "rock.msh",
-            {"joint fault": through(30.0)} if joints is None else joints,
-            **asked,
-        )
+        lines = {"joint fault": through(30.0)} if joints is None else joints
+        crossed(tmp_path / "rock.msh", lines, 0.0, SIZE, **asked)
         (tmp_path / "scene.toml").write_text(text)
         (found,) = load(tmp_path / "scene.toml")
         return found
@@ -116,40 +77,15 @@ def test_a_joint_of_a_mesh_is_that_of_a_set(asked, given, tmp_path):
         assert off < 0.01
 
 
-def test_a_uniform_stress_is_exact_through_the_joint_of_a_mesh(given):
-    """The rock above the joint moves by what the joint opens and slides."""
-    text = SCENE.replace("intact_modulus = 5e10", "intact_modulus = 5e10, intact_poisson = 0.2")
-    found = body_of(given({"joint fault": through(37.0)}, text, size=1.5))
-    body, contacts = found.body, found.blocks.contacts
-    (normal, *_) = contacts.normal[contacts.of_joints(1)]
-    traction = STRESS @ normal
-    opened = (traction @ normal) * normal
-    jump = opened / STIFFNESS[0] + (traction - opened) / STIFFNESS[1]
-    far, nodes = np.zeros(len(body.x), dtype=bool), cell_nodes(body.space)
-    far[nodes[(body.x[nodes].mean(axis=1) - SIZE / 2) @ normal > 0]] = True
-    lateral = LAME / (2 * LAME + 2 * SHEAR) * np.trace(STRESS) * np.eye(2)
-    u = (body.x @ (STRESS - lateral) / (2 * SHEAR) + far[:, None] * jump).ravel()
-    force = (body.stiffness + springs(body)) @ u - pushed(body, STRESS)
-    assert np.abs(force).max() < 1e-12 * np.abs(body.stiffness).max() * np.abs(u).max()
-
-
-CROSS = (
-    SCENE
-    + """
+CROSS = SCENE.replace("time =", """\
+loads = [{ kind = "pressure", opening = 0, shape = "ricker", amplitude = 1e6, period = 4e-3 }]
+time =""") + """
 [[joint_sets]]
 name = "cross"
 dip = 80.0
 normal_stiffness = 2e10
 shear_stiffness = 8e9
-
-[[loads]]
-kind = "pressure"
-opening = 0
-shape = "ricker"
-amplitude = 1e6
-period = 4e-3
-"""
-)
+"""  # fmt: skip
 #: A joint that bends and ends inside the rock, one that ends at it, and a hole.
 BENT = {
     "Joint FAULT": [(0.0, 3.0), (4.0, 5.0), (7.0, 5.5)],
@@ -191,7 +127,7 @@ def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):
         (
             {"joint fault": [(0.0, 0.0), (SIZE, 0.0)]},
             SCENE,
-            "between no two blocks, the first near",
+            "between no two blocks, the first",
         ),
         (None, SCENE.replace("dip = 30.0", "dip = 30.0\nthrough = [1.0, 1.0]"), "has no effect"),
         (None, SCENE.replace("rock.msh", "lost.msh"), "domain.mesh = 'lost.msh': cannot be read"),
@@ -225,12 +161,8 @@ def test_tetrahedra_in_space(tmp_path):
         occ.synchronize()
         each = [(k, len(gmsh.model.getAdjacencies(2, k)[0])) for _, k in gmsh.model.getEntities(2)]
         gmsh.model.removeEntities([(2, tag) for tag, cells in each if not cells], True)
-        faces = {
-            "rock": (3, [1, 2]),
-            "joint fault": (2, [tag for tag, cells in each if cells == 2]),
-        }
-        for name, (dim, tags) in faces.items():
-            gmsh.model.setPhysicalName(dim, gmsh.model.addPhysicalGroup(dim, tags), name)
+        grouped(gmsh, 3, "rock", [1, 2])
+        grouped(gmsh, 2, "joint fault", [tag for tag, cells in each if cells == 2])
         gmsh.option.setNumber("Mesh.MeshSizeMax", 0.6)
         gmsh.model.mesh.generate(3)
         gmsh.write(str(tmp_path / "rock.msh"))

@@ -8,25 +8,30 @@ from scipy.linalg import eigh
 
 from closed_forms import generalised_alpha as theory
 from jointwave.cases.errors import StoppedError
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.exact.bar.bars import JOINTED
+from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.continuum.run import simulate
 from jointwave.continuum.stepping.implicit import HALVINGS, Implicit, scheme
 from jointwave.continuum.stepping.problem import Held
-from tests.continuum.stacked import Force, stack
-from tests.continuum.test_explicit import joined, problem
+from tests.continuum.bodies import PUSH
+from tests.continuum.stacked import Force, joined, problem, stack
 
-RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}}
-ACROSS = {"motion__rotation": "none", "load__direction": [0.6, 0.8, 0.0]}
+MATCHED: dict[str, Any] = {"joints__damping_ratio": 0.02, "ends__end": "matched"}
+NO_TENSION: dict[str, Any] = {"joints__tension": False}
+#: Friction whose cohesion slip takes, with dashpots, under an oblique load.
+SLIDING: dict[str, Any] = {
+    "joints__friction_angle": 30.0,
+    "joints__cohesion": 2e5,
+    "joints__residual_cohesion": 1e5,
+    "joints__damping_ratio": 0.02,
+    "motion__rotation": "none",
+    "load__direction": [0.6, 0.8, 0.0],
+}
 
 
 def numerics(**changes):
     """Return the keys of implicit steps."""
     return {"numerics__continuum": {"scheme": "implicit", **changes}}
-
-
-def misfit(found, expected):
-    return np.linalg.norm(found - expected) / np.linalg.norm(expected)
 
 
 def pushed(dim, dt, eta=None, held=False):
@@ -45,7 +50,7 @@ def pushed(dim, dt, eta=None, held=False):
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.5, 0.9, 1.0])
-@pytest.mark.parametrize(("dim", "eta", "held"), [(1, None, False), (1, 0.1, True), (2, 0.1, True)])
+@pytest.mark.parametrize(("dim", "eta", "held"), [(1, None, False), (2, 0.1, True)])
 def test_a_linear_run_is_the_exact_discrete_response(dim, eta, held, rho):
     """Every mode under a load of noise, a hundred steps; dashpots in proportion to springs."""
     dt = 0.2
@@ -54,52 +59,43 @@ def test_a_linear_run_is_the_exact_discrete_response(dim, eta, held, rho):
     steps.take(0, 101, 1000)
     free, body = steps.balance.free, own.body
     square, shapes = eigh(own.stiffness[free][:, free].toarray(), np.diag(body.mass[free]))
-    omega, full = (
-        np.sqrt(np.abs(square) * (square > 1e-12 * square[-1])),
-        np.zeros((body.mass.size, free.size)),
-    )
+    omega = np.sqrt(np.abs(square) * (square > 1e-12 * square[-1]))
+    full, load = np.zeros((body.mass.size, free.size)), np.zeros((body.mass.size, 101))
     full[free] = shapes
-    load = np.zeros((body.mass.size, 101))
     np.add.at(load, own.forces.freedom, own.forces.at(0, 101).T)
     motion = theory.response(scheme(rho), omega, full.T @ load, dt, (eta or 0.0) * omega / 2)
     for found, expected in zip((steps.now.u, steps.now.v, steps.now.a), motion, strict=True):
-        assert misfit(found, full @ expected[:, -1]) < 1e-9
+        assert relative_l2(found, full @ expected[:, -1]) < 1e-9
 
 
-@pytest.mark.parametrize("rho", [0.6, 1.0])
-@pytest.mark.parametrize("kind", [{}, {"joints__damping_ratio": 0.02, "ends__end": "matched"}])
-def test_error_falls_with_the_square_of_the_step(pillar, rho, kind):
+@pytest.mark.parametrize("rho", [0.0, 0.25, 0.5, 0.9, 1.0])
+def test_radius_is_kept_at_infinity_and_never_exceeded(rho):
+    """The characteristic polynomial at infinity is (z + rho)^3; round-off of its triple root would
+    be its cube root, so it is the polynomial that is compared."""
+    found = np.poly(theory.amplification(scheme(rho), 1e7))
+    assert found == pytest.approx(np.poly([-rho] * 3), abs=1e-12)
+    x = np.logspace(-3, 5, 200)
+    assert theory.spectral_radius(scheme(rho), x).max() <= 1 + 1e-8
+
+
+def test_error_falls_with_the_square_of_the_step(pillar):
     """A smooth pulse against the exact jointed bar, at a joint and inside a block."""
     errors = []
     for interval in (8e-5, 4e-5):
         scene = pillar(
-            **RICKER, **kind, **numerics(spectral_radius=rho, steps_per_period=10),
+            **MATCHED, **numerics(spectral_radius=0.6, steps_per_period=10),
+            load={"shape": "ricker", "amplitude": 1e6, "period": 0.01},
             pillar__length=20.0, time__duration=0.02, soft_layers=[],
             record={"stress": [10.0, 10.2], "velocity": [9.75], "interval": interval},
         )  # fmt: skip
         run, exact = simulate(scene), JOINTED.run(scene)
         assert run.attrs["dt"] == interval
-        errors.append(
-            [misfit(run[name].values, exact[name].values) for name in ("stress", "velocity")]
-        )
-    rates = np.log2(np.divide(errors[0], errors[1]))
-    assert rates == pytest.approx(np.full(2, 2.0), abs=0.1)
+        errors.append([relative_l2(run[x].values, exact[x].values) for x in ("stress", "velocity")])
+    assert np.log2(np.divide(*errors)) == pytest.approx(np.full(2, 2.0), abs=0.1)
 
 
-STRENGTHS: dict[str, dict[str, Any]] = {
-    "no tension": {"joints__tension": False},
-    "cohesion, dashpots": {
-        "joints__friction_angle": 30.0,
-        "joints__cohesion": 2e5,
-        "joints__residual_cohesion": 1e5,
-        "joints__damping_ratio": 0.02,
-        **ACROSS,
-    },
-}
-
-
-@pytest.mark.parametrize(("kind", "fraction"), [("no tension", 0.15), ("cohesion, dashpots", 0.33)])
-def test_implicit_and_explicit_steps_meet(pillar, kind, fraction):
+@pytest.mark.parametrize(("joints", "fraction"), [(NO_TENSION, 0.15), (SLIDING, 0.33)])
+def test_implicit_and_explicit_steps_meet(pillar, joints, fraction):
     """Both err with the square of the step, so that their distance is a quarter at half the step;
     kinks in time, of joints that open or slip, may cost a part of an order."""
     distances = []
@@ -108,34 +104,15 @@ def test_implicit_and_explicit_steps_meet(pillar, kind, fraction):
         runs = []
         for way in ("explicit", "implicit"):
             scene = pillar(
-                **STRENGTHS[kind], pillar__length=5.0, time__duration=0.008, soft_layers=[],
+                **joints, pillar__length=5.0, time__duration=0.008, soft_layers=[],
                 record={"stress": [2.5], "velocity": [2.25], "interval": 5e-5},
                 numerics__continuum=own | {"scheme": way},
             )  # fmt: skip
             runs.append(simulate(scene))
         assert runs[0].attrs["steps"] == runs[1].attrs["steps"]
-        distances.append(misfit(*(one["velocity"].values for one in runs)))
+        distances.append(relative_l2(*(one["velocity"].values for one in runs)))
     assert distances[0] < 1e-3
     assert np.log2(distances[0] / distances[1]) > 1.4
-
-
-def test_a_stiff_joint_takes_steps_of_a_hundred_critical_ones(pillar):
-    """One joint 1e4 times as stiff as the others: what bounds explicit steps bounds neither
-    stability nor accuracy here. By theory a wave of frequency 2 / T lags by (omega dt)^2 / 11 of
-    its travel of up to 3 / 2 T, 0.02 rad."""
-    scene = pillar(
-        load={"shape": "ricker", "amplitude": 1e6, "period": 0.02},
-        pillar__length=20.0, time__duration=0.04,
-        soft_layers=[{"y": 10.0, "spacing_stiffness": 4.608e13}],
-        record={"stress": [10.0], "velocity": [9.75], "interval": 1.25e-4},
-        **numerics(order=4, steps_per_period=10, spectral_radius=0.9),
-    )  # fmt: skip
-    p = calibrate(scene)
-    assert p.own_stiffness.max() > 1e4 * p.own_stiffness.min()
-    run, exact = simulate(scene), JOINTED.run(scene)
-    assert run.attrs["dt"] > 100 * run.attrs["critical_dt"]
-    assert misfit(run["stress"].values, exact["stress"].values) < 0.02
-    assert misfit(run["velocity"].values, exact["velocity"].values) < 0.02
 
 
 def test_a_linear_run_is_factorised_once(pillar):
@@ -157,23 +134,26 @@ class InHalves(Implicit):
         return end - begin < 1 and super()._step(n, begin, end)
 
 
+class Linear:
+    """A load that is linear within the steps of another, each cut into `share`."""
+
+    def __init__(self, load, share):
+        self.load, self.share, self.freedom = load, share, load.freedom
+
+    def at(self, first, last):
+        n = np.arange(first, last) / self.share
+        low = np.floor(n).astype(int)
+        given = self.load.at(0, low[-1] + 2)
+        return given[low] + (n - low)[:, None] * (given[low + 1] - given[low])
+
+
 def test_a_run_in_halves_is_one_of_half_the_step():
-    """Under the same load, linear in time within whole steps, to round-off."""
+    """Under the same load, to round-off."""
     runs = []
     for kind, share in ((InHalves, 1), (Implicit, 2)):
         own = pushed(2, 0.2, 0.1, True)
-        values = own.forces
-
-        class Linear:
-            freedom = values.freedom
-
-            def at(self, first, last, share=share, values=values):
-                n = np.arange(first, last) / share
-                low = np.floor(n).astype(int)
-                given = values.at(0, low[-1] + 2)
-                return given[low] + (n - low)[:, None] * (given[low + 1] - given[low])
-
-        steps = kind(own._replace(forces=Linear()), 0.2 / share, 31, 0.8)
+        own = own._replace(forces=Linear(own.forces, share))
+        steps = kind(own, 0.2 / share, 31, 0.8)
         steps.take(0, 30 * share + 1, share)
         runs.append(steps)
     halved, fine = runs
@@ -185,8 +165,7 @@ def test_a_run_in_halves_is_one_of_half_the_step():
 
 def test_a_step_that_does_not_converge_ends_the_run_with_what_there_is(rock_mass, monkeypatch):
     joint = {"dip": 30.0, "through": [3.0, 2.0]}
-    push = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
-    scene = rock_mass(joint, continuum={"scheme": "implicit"}, loads=[push])
+    scene = rock_mass(joint, continuum={"scheme": "implicit"}, loads=[PUSH])
     whole, step = simulate(scene), Implicit._step
 
     def fails(self, n, begin, end):

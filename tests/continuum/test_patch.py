@@ -1,7 +1,11 @@
-"""Uniform stress through joints, and motions that strain nothing."""
+"""Uniform stress through joints, motions that strain nothing, and matrices that dolfinx assembles.
+Orders are those of waves through a joint, `plane/test_waves.py`, and of manufactured motions."""
 
+import dolfinx.fem.petsc
 import numpy as np
 import pytest
+import ufl
+from dolfinx import fem
 
 from tests.continuum.bodies import LAME, SHEAR, STIFFNESS, of_blocks, pushed, springs
 
@@ -50,18 +54,14 @@ def test_uniform_stress_is_in_balance_through_joints(made, dim, joints, order):
 
 
 @pytest.mark.parametrize(("dim", "joints", "order"), CASES)
-def test_rigid_motions_strain_nothing(made, dim, joints, order):
-    body = made(*joints, dim=dim, continuum={"order": order}).body
+def test_rigid_motions_mass_areas_and_symmetry(made, dim, joints, order):
+    found = made(*joints, dim=dim, continuum={"order": order})
+    body, blocks, K = found.body, found.blocks, found.body.stiffness
     turn = np.array([[0.0, -1.0, 0.4], [1.0, 0.0, -0.7], [-0.4, 0.7, 0.0]])[:dim, :dim]
     u = (body.x @ turn + np.arange(1, dim + 1)).ravel()
-    assert np.abs(body.stiffness @ u).max() < 1e-13 * np.abs(body.stiffness).max() * u.max()
+    assert np.abs(K @ u).max() < 1e-13 * np.abs(K).max() * u.max()
     assert np.abs(body.joints.matrix @ u).max() < 1e-13 * u.max()
-
-
-@pytest.mark.parametrize(("dim", "joints", "order"), CASES)
-def test_mass_areas_and_symmetry(made, dim, joints, order):
-    found = made(*joints, dim=dim, continuum={"order": order})
-    body, blocks = found.body, found.blocks
+    assert np.abs(K - K.T).max() < 1e-14 * np.abs(K).max()
     mass = body.mass.reshape(-1, dim)
     assert mass.min() > 0
     assert np.allclose(mass.sum(axis=0), 2600.0 * blocks.volume.sum(), rtol=1e-13)
@@ -70,8 +70,6 @@ def test_mass_areas_and_symmetry(made, dim, joints, order):
     assert np.isclose(body.joints.weight.sum(), blocks.contacts.area.sum(), rtol=1e-12)
     sides = sum(side.weight.sum() for side in body.sides.values())
     assert np.isclose(sides, blocks.boundary.area.sum(), rtol=1e-12)
-    K = body.stiffness
-    assert np.abs(K - K.T).max() < 1e-14 * np.abs(K).max()
 
 
 def test_brickwork_carries_stress_across_its_beds(made):
@@ -93,3 +91,23 @@ def test_brickwork_carries_stress_across_its_beds(made):
     assert along.any() and found.blocks.count > 16
     assert np.abs(force).max() < 1e-12 * np.abs(body.stiffness).max() * np.abs(u).max()
     assert np.abs(jump[along]).max() < 1e-13 * np.abs(u).max()
+
+
+@pytest.mark.parametrize(("dim", "order"), [(2, 1), (2, 3), (3, 2)])
+def test_matrices_are_those_that_dolfinx_assembles(made, dim, order):
+    """The same forms, written by hand on the body's space; in boxes all rules are exact to the
+    order that they state."""
+    dip = {"dip": 0.0, "spacing": 2.0}
+    body = made(dip, dim=dim, continuum={"order": order, "size": 2.0}).body
+    u, v = ufl.TrialFunction(body.space), ufl.TestFunction(body.space)
+    rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
+    strain = ufl.sym(ufl.grad(u))
+    stress = LAME * ufl.tr(strain) * ufl.Identity(dim) + 2 * SHEAR * strain
+    for form, own in (
+        (ufl.inner(stress, ufl.sym(ufl.grad(v))), body.stiffness.toarray()),
+        (2600.0 * ufl.inner(u, v), np.diag(body.mass)),
+    ):
+        found = dolfinx.fem.petsc.assemble_matrix(fem.form(form * ufl.dx(metadata=rule)))
+        found.assemble()
+        expected = found.convert("dense").getDenseArray().real
+        assert np.abs(own - expected).max() < 1e-13 * np.abs(expected).max()

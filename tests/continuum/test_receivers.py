@@ -87,23 +87,3 @@ def test_sections_of_skewed_cells_read_uniform_stress_exactly(kind, column, tmp_
     force = uniform_force(rock.intact_modulus, rock.intact_poisson, dim)
     assert np.abs(values - force).max() < 1e-11 * np.abs(force).max()
     assert read.inertia.nnz == 0
-
-
-@pytest.mark.parametrize(kinds, BOXES)
-def test_section_force_of_a_bar_pushed_at_one_end_falls_linearly(dim, cell, order, homogenised):
-    """A free bar under a constant end force F accelerates as a whole; force(y) = F (1 - y / L).
-
-    Whatever Poisson's ratio bends the section to: the balance of momentum holds on every mesh.
-    """
-    found, push, force = homogenised(dim, cell, order)[1], 0.0, 5.0
-    body, along = found.body, dim // 2
-    start, upright = body.sides["start"], np.tile(np.arange(dim) == along, len(body.x))
-    face = np.bincount(dim * start.node + along, start.weight, upright.size)
-    rate = upright * force / body.mass[upright].sum()
-    push = force * face / face.sum() - body.mass * rate
-    u = np.linalg.lstsq(body.stiffness.toarray(), push, rcond=1e-12)[0]
-    places = np.array([0.0, 0.05, 0.2, 0.3, 0.5, 0.9, 1.41])
-    read = sections(found, places.tolist())
-    values = (read.elastic @ u + read.inertia @ rate).reshape(-1, dim)
-    assert values[:, 0] == pytest.approx(force * (1 - places / 1.5), abs=1e-10)
-    assert np.abs(values[:, 1:]).max(initial=0.0) < 1e-10

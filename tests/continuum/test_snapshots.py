@@ -1,4 +1,5 @@
-"""Snapshots: exact stress in every linear cell, what receivers record, and joints that part."""
+"""Snapshots: exact stress in every linear cell, what receivers record, and what dolfinx writes of
+them, as it reads it back."""
 
 from itertools import pairwise
 from types import SimpleNamespace
@@ -6,14 +7,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+from mpi4py import MPI
 
-from jointwave.cases.errors import InterruptedRun
+from jointwave.cases.gmsh_file import FROM_GMSH
+from jointwave.continuum import simulate, write_xdmf
 from jointwave.continuum.receivers.snapshots import RockRecorder
-from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
+from jointwave.continuum.space.compat import cell_corners, input_cells
+from jointwave.continuum.space.fenicsx import PETSc, dolfinx
 from jointwave.results.snapshots import snapshots_of
 from jointwave.results.stress import stress_components
-from tests.continuum.bodies import SHEAR
+from tests.continuum.bodies import PUSH, SHEAR
 from tests.continuum.test_patch import STRESS, stressed
 
 FLAT = {"dip": 0.0, "spacing": 1.7}
@@ -25,8 +29,6 @@ DEEP = GIVEN | {"zz": 4e6, "yz": 2e5, "xz": -1e5}
 CASES = [(2, FLAT, order, "quad", order**2) for order in (1, 3)]
 CASES += [(2, STEEP, 1, "triangle", 1), (2, STEEP, 2, "triangle", 4)]
 CASES += [(3, FLAT, 2, "hexahedron", 8), (3, SLANTED, 1, "tetra", 1), (3, SLANTED, 2, "tetra", 8)]
-BESIDE = [0.0, 0.25, 2.0]  # m along a pillar: ends, and the middle of a block
-PUSH = {"kind": "pressure", "side": "top", "shape": "sine", "period": 1e-3, "amplitude": 1e6}
 
 
 def volumes(s):
@@ -126,22 +128,15 @@ def test_a_pillar_has_the_stress_along_it(pillar, dim, cell, kind):
     assert np.array_equal(s.block, middle // scene.pillar.block)
 
 
-def pushed(rock_mass, scheme, **tables):
-    """Return a scene that slips under a pressure, recorded at its corners and on a joint."""
-    joint = {"dip": 0.0, "through": [3.0, 2.0], "friction_angle": 30.0}
-    record = {"points": [[0.0, 4.0], [6.0, 0.0]], "interval": 2e-5, "fields": 1.6e-4}
-    continuum = {"scheme": scheme, "order": 2, "steps_per_period": 50}
-    table = {"loads": [PUSH], "boundaries": {"left": "quiet"}, "record": record}
-    return rock_mass(joint, continuum=continuum, **table | tables)
-
-
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
 def test_snapshots_are_what_receivers_record(rock_mass, scheme):
     """At corners, to the last digits; samples are the same bit for bit as without snapshots."""
-    scene = pushed(rock_mass, scheme)
-    found = simulate(scene)
-    bare = {key: value for key, value in scene.record if key != "fields"}
-    plain = simulate(pushed(rock_mass, scheme, record=bare))
+    joint = {"dip": 0.0, "through": [3.0, 2.0], "friction_angle": 30.0}
+    record = {"points": [[0.0, 4.0], [6.0, 0.0]], "interval": 2e-5}
+    table = {"loads": [PUSH], "boundaries": {"left": "quiet"}}
+    table["continuum"] = {"scheme": scheme, "order": 2, "steps_per_period": 50}
+    scene = rock_mass(joint, **table, record=record | {"fields": 1.6e-4})
+    found, plain = simulate(scene), simulate(rock_mass(joint, **table, record=record))
     for name in ("velocity", "displacement", "stress", "energy"):
         np.testing.assert_array_equal(found[name], plain[name], err_msg=name)
     s = snapshots_of(found)
@@ -155,63 +150,69 @@ def test_snapshots_are_what_receivers_record(rock_mass, scheme):
             assert away < 1e-12 * np.abs(known).max()
 
 
-@pytest.mark.parametrize("scheme", ["explicit", "implicit"])
-def test_an_interrupted_run_has_all_snapshots(rock_mass, keeper_at, scheme):
-    scene, keeper = pushed(rock_mass, scheme), keeper_at(45)
-    whole = simulate(scene)
-    with pytest.raises(InterruptedRun):
-        simulate(scene, keeper=keeper)
-    found = simulate(scene, keeper=keeper)
-    for name in ("field_time", "field_displacement", "field_velocity", "field_stress"):
-        np.testing.assert_array_equal(found[name], whole[name], err_msg=name)
+def read_function(path, name, count):
+    """Return the values of a function at one time, float array [count, n]."""
+    file = PETSc.Viewer().createHDF5(str(path.with_suffix(".h5")), "r", comm=PETSc.COMM_SELF)
+    values = PETSc.Vec().create(PETSc.COMM_SELF)
+    values.setName(f"Function/{name}")
+    values.load(file)
+    return np.real(values.array).reshape(count, -1)
 
 
-def short(pillar, dim=1, **changes):
-    """Return four blocks of rock, keys changed."""
-    keys = {
-        "pillar__length": 2.0,
-        "rock__intact_modulus": 8.64e10,
-        "load": {"shape": "sine", "amplitude": 1e6, "period": 2e-3, "cycles": 1},
-        "ends__end": "free",
-        "time__duration": 4e-3,
-        "record": {"velocity": BESIDE, "interval": 2e-5, "fields": 4e-4},
-        "numerics__continuum__dim": dim,
-    }
-    return pillar(**keys | changes)
+def written(path, s, names, time):
+    """Return for each cell of the file its corners, and there displacement and velocity; its block
+    and stresses: all in a row [cells, n], in order of the middles of cells."""
+    with dolfinx.io.XDMFFile(MPI.COMM_SELF, str(path), "r") as file:
+        mesh = file.read_mesh(name="mesh")
+    corners, row = cell_corners(mesh), input_cells(mesh)
+    geometry = mesh.geometry
+    table = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
+    table = np.asarray(getattr(table, "array", table)).reshape(len(row), -1)
+    place = np.asarray(geometry.input_global_indices)[table]
+    parts = [corners]
+    parts += [
+        read_function(path, f"{one}/{time}", len(s.points))[place]
+        for one in ("displacement", "velocity")
+    ]
+    parts += [read_function(path, f"{one}/{time}", len(row))[row] for one in names]
+    parts.append(read_function(path, "block/0", len(row))[row])
+    return in_order(parts)
 
 
-@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
-def test_snapshots_of_the_bar_are_what_receivers_record(pillar, quantity):
-    """At nodes that are receivers: both ends, and the middle of the first block."""
-    result = simulate(short(pillar))
-    found, recorded = snapshots_of(result), result[quantity].values[:, ::20, 0]
-    np.testing.assert_array_equal(found.time, result.time.values[::20])
-    for y, waveform in zip(BESIDE, recorded, strict=True):
-        node = int(np.argmin(np.abs(found.points[:, 1] - y)))
-        assert found.points[node, 1] == pytest.approx(y, abs=1e-12)
-        scale = np.abs(recorded).max()
-        np.testing.assert_allclose(
-            getattr(found, quantity)[:, node, 1], waveform, rtol=0, atol=1e-13 * scale
-        )
+def in_order(parts):
+    """Return arrays [cells, ...] as rows in the order of the last part, the block, and then of the
+    middles of cells."""
+    middle = parts[0].mean(axis=1).round(9)
+    order = np.lexsort((*middle.T, parts[-1].ravel()))
+    return np.concatenate([one.reshape(len(order), -1)[order] for one in parts], axis=1)
 
 
-@pytest.mark.parametrize("dim", [1, 3])
-def test_a_joint_without_tension_opens_between_its_own_nodes(pillar, dim):
-    """Facing nodes lie at one place, and part once tension comes."""
-    scene = short(pillar, dim, joints__tension=False)
-    found = snapshots_of(simulate(scene))
-    nodes = np.unique(found.cells[found.block == 2]), np.unique(found.cells[found.block == 3])
-    facing = [n[np.isclose(found.points[n, 1], 1.5)] for n in nodes]
-    left, right = (n[np.lexsort(found.points[n][:, [0, 2]].round(9).T)] for n in facing)
-    np.testing.assert_allclose(found.points[left], found.points[right], atol=1e-12)
-    gap = found.displacement[:, right, 1] - found.displacement[:, left, 1]
-    assert gap.max() > 0.1 * np.abs(found.displacement).max()
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_what_is_written_reads_back(dim, rock_mass, pillar, tmp_path):
+    if dim == 1:
+        scene = pillar(time__duration=2e-3, record__fields=1e-3, load__amplitude=1e6)
+    else:
+        record = {"points": [], "interval": 1e-4, "fields": 1e-3}
+        joint = (STEEP, SLANTED)[dim - 2]
+        scene = rock_mass(joint, dim=dim, record=record, loads=[PUSH])
+    result = simulate(scene)
+    path = write_xdmf(tmp_path / "fields.xdmf", result)
+    s, last = snapshots_of(result), len(result["field_time"]) - 1
+    names = ["axial stress"]
+    if dim > 1:
+        names = [f"stress {one}" for one in result["stress_component"].values]
+    cells = s.cells[:, FROM_GMSH[{1: "interval", 2: "triangle", 3: "tetrahedron"}[dim]]]
+    stress = s.stress[last].reshape(len(cells), -1)
+    moved = s.displacement[last][cells], s.velocity[last][cells]
+    expected = in_order([s.points[cells], *moved, stress, s.block[:, None]])
+    text = f"{s.time[last]:.16g}".replace(".", "_")
+    assert np.abs(s.velocity[last]).max() > 0 and np.ptp(s.block) > 0
+    found = written(path, s, names, text)
+    assert found.shape == expected.shape
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
 
 
-def test_stress_of_a_slow_push_is_the_load(pillar):
-    """Two widths and more from a fixed end, which only there keeps the rock from widening."""
-    changes = {"load": {"shape": "step", "amplitude": 1e6}, "ends__end": "fixed"}
-    changes |= {"joints__damping_ratio": 0.5, "time__duration": 0.05}
-    scene = short(pillar, 2, **changes)
-    found = snapshots_of(simulate(scene))
-    assert found.stress[-1, found.block < 2] == pytest.approx(1e6, rel=1e-5)
+def test_a_result_without_snapshots_is_refused(pillar, tmp_path):
+    result = simulate(pillar(time__duration=1e-3))
+    with pytest.raises(ValueError, match="has no snapshots"):
+        write_xdmf(tmp_path / "fields.xdmf", result)

@@ -8,8 +8,6 @@ from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import at_rest
 from jointwave.continuum.run import simulate
 
-SQUARE = {"size": [6.0, 6.0]}
-HELD = {"bottom": "fixed"}
 HOLE = [[2.0, 2.5], [4.0, 2.5], [4.0, 4.0], [2.0, 4.0]]
 EXCAVATED = {
     "domain": {"size": [6.0, 6.0], "openings": [HOLE], "non_convex": "cut"},
@@ -30,7 +28,7 @@ def test_a_prestress_is_in_equilibrium_where_joints_hold_it(rock_mass):
     # Along the normal (-sin, cos) of 30 degrees of dip and its left: t = P n.
     scene = rock_mass(
         {"dip": 30.0, "through": [3.0, 3.0], "friction_angle": 35.0},
-        domain=SQUARE,
+        domain={"size": [6.0, 6.0]},
         prestress={"xx": 4e6, "yy": 6e6, "xy": 5e5},
         record={"points": [[2.0, 1.5]], "joints": [[3.0, 3.0]]},
     )
@@ -54,25 +52,6 @@ def test_a_prestress_that_joints_cannot_carry_is_refused(stress, keys, rock_mass
         simulate(scene)
 
 
-def test_rock_at_rest_under_gravity_carries_what_is_above(rock_mass):
-    # Without Poisson's ratio every column stands by itself: sigma_yy = rho g (6 m - y).
-    scene = rock_mass(
-        {"dip": 0.0, "through": [3.0, 3.0]},
-        domain=SQUARE,
-        rock={"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.0},
-        gravity={"acceleration": 10.0},
-        boundaries=HELD,
-        continuum={"order": 2},
-        record={"points": [[2.0, 1.5], [4.0, 5.0]], "joints": [[3.0, 3.0]]},
-    )
-    found = simulate(scene)
-    assert found.attrs["static_out_of_balance"] < 1e-10
-    stress, traction = found.stress.values[:, 0], found.traction.values[0, 0]
-    assert stress[:, 1] == pytest.approx([2600 * 10 * 4.5, 2600 * 10 * 1.0], rel=1e-9)
-    assert np.abs(stress[:, [0, 2]]).max() < 1e-6 * 1e5
-    assert traction == pytest.approx([2600 * 10 * 3.0, 0.0], rel=1e-9, abs=1e-4)
-
-
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
 def test_nothing_moves_after_an_excavation(scheme, rock_mass):
     """Forces that are left, 1e-10 of the largest, move a node by at most themselves over its mass
@@ -84,9 +63,8 @@ def test_nothing_moves_after_an_excavation(scheme, rock_mass):
     moment = problem.body.x[:, 0] * force[:, 1] - problem.body.x[:, 1] * force[:, 0]
     assert abs(moment.sum()) < 1e-13 * np.abs(moment).sum()
     found = simulate(scene)
-    assert (
-        np.abs(found.velocity).max() < 1e-10 * np.abs(force).max() / problem.body.mass.min() * 2e-3
-    )
+    most = 1e-10 * np.abs(force).max() / problem.body.mass.min() * 2e-3
+    assert np.abs(found.velocity).max() < most
     assert np.abs(found.stress[:, 0] - [4e6, 6e6, 5e5]).max() > 1e5
     assert "gravity" not in found.term
 
@@ -127,12 +105,6 @@ def test_a_turned_excavation_is_the_same(rock_mass):
     assert np.abs(elastic[0] - one[0]).max() > 1e-3 * np.abs(one[0]).max()
 
 
-def test_without_a_prestress_an_opening_costs_nothing(rock_mass):
-    scene = excavated(rock_mass, prestress=None)
-    assert plan_of(scene).problem.steady is None
-    assert "static_steps" not in simulate(scene).attrs
-
-
 def test_gravity_that_acts_later_is_no_part_of_the_excavation(rock_mass):
     """Rock that nothing holds falls freely from the state that the excavation leaves."""
     free = dict.fromkeys(("left", "right", "bottom", "top"), "free")
@@ -150,7 +122,7 @@ def test_a_shaken_side_moves_as_it_is_told(rock_mass, scheme):
     found = simulate(
         rock_mass(
             loads=[base | pulse],
-            boundaries=HELD,
+            boundaries={"bottom": "fixed"},
             record=record,
             continuum={"scheme": scheme, "spectral_radius": 1.0},
         )
@@ -160,16 +132,3 @@ def test_a_shaken_side_moves_as_it_is_told(rock_mass, scheme):
     assert np.abs(found.displacement[0] - exact).max() < 1e-12
     energy = found.energy.values - found.energy.values[:, :1]
     assert np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() < 1e-11 * energy.max()
-
-
-@pytest.mark.parametrize(
-    "joints, changes, reason",
-    [
-        ([{"dip": 30.0, "through": [3.0, 3.0]}], {}, "no joint set has a spacing"),
-        ([{"dip": 30.0, "spacing": 2.0, "friction_angle": 30.0}], {}, "no friction_angle"),
-        ([{"dip": 30.0, "spacing": 2.0}], {"damping": {"local": 0.5}}, "no local damping"),
-    ],
-)
-def test_what_an_effective_medium_cannot_be_is_said(joints, changes, reason, rock_mass):
-    with pytest.raises(SceneError, match=reason):
-        simulate(rock_mass(*joints, **changes), "equivalent")

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.problem import Problem
 from tests.continuum.stacked import readings
@@ -35,24 +34,6 @@ def drive(one, dt, steps, inertia):
     leapfrog.throw((g(0.0) - g(-dt)) / dt * start)
     leapfrog.take(0, steps, NEVER)
     return leapfrog.u
-
-
-def drive_implicitly(one, dt, steps, frequency, rho=1.0):
-    """Return the displacement after so many implicit steps dt (s) of spectral radius rho, from the
-    exact start; frequency : rad/s, that velocity and inertia of the motion are taken with."""
-    motion, start = one.motion, one.motion.displacement(one.body.x).ravel()
-    load = Load(one, dt, lambda t: -(frequency**2) * motion.history(t))
-    own = Implicit(free(one)._replace(forces=load), dt, 1, rho, energy=False)
-    own.now.u[:] = motion.history(0.0) * start
-    own.now.v[:] = frequency * np.cos(motion.start) * start
-    own.take(0, steps + 1, NEVER)
-    return own.u
-
-
-def trapezoids_own(motion, dt):
-    """Return the frequency (rad/s) that the trapezoidal rule sees a sine with: under it, its steps
-    make no error."""
-    return 2 / dt * np.tan(motion.omega * dt / 2)
 
 
 def leapfrogs_own(motion, dt):
@@ -88,15 +69,3 @@ def test_order_of_the_step(kind):
         u = drive(one, dt, steps, one.motion.acceleration)
         errors.append(np.linalg.norm(u - drive(one, dt, steps, leapfrogs_own(one.motion, dt))))
     assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.02)
-
-
-@pytest.mark.parametrize("rho", [1.0, 0.5, 0.0])
-def test_order_of_the_implicit_step(rho):
-    """Two for every spectral radius: the distance from steps that make no error."""
-    one, errors = moved("quadrilateral", 4, 1), []
-    for steps in (60, 120, 240):
-        dt = END / steps
-        u = drive_implicitly(one, dt, steps, one.motion.omega, rho)
-        exact = drive_implicitly(one, dt, steps, trapezoids_own(one.motion, dt))
-        errors.append(np.linalg.norm(u - exact))
-    assert np.diff(-np.log2(errors)) == pytest.approx([2, 2], abs=0.05)

@@ -7,7 +7,6 @@ from closed_forms.quiet_face import coefficients
 from jointwave.cases.incident import FreeField, PlaneWave, plane_wave
 from jointwave.cases.loads import history_of
 from jointwave.compare.exact.rock_mass.field import field_of
-from jointwave.compare.exact.rock_mass.point_force import LINE as LINE_FORCE
 from jointwave.compare.exact.rock_mass.stack_waves import ONE_JOINT
 from jointwave.continuum import simulate
 from tests.continuum.plane.conftest import ROCK
@@ -127,36 +126,6 @@ def test_a_turned_scene_has_a_turned_result(struck):
     assert np.abs(found.velocity.values @ turn.T - other.velocity.values).max() < 1e-9 * size
     assert np.abs(found.gap - other.gap).max() < 1e-9 * np.abs(found.gap).max()
     assert np.abs(found.traction - other.traction).max() < 1e-9 * np.abs(found.traction).max()
-
-
-def test_a_force_at_a_point_moves_the_rock_as_a_line_force_does(struck):
-    force = {"kind": "force", "quantity": "force", "at": [10.0, 10.0], "direction": [0.6, 0.8]}
-    pulse = {"shape": "ricker", "amplitude": 1e6, "period": 4e-3}
-    record = {"points": [[13.0, 12.0], [10.0, 14.0]], "interval": 4e-5}
-    scene = struck(
-        joints=[],
-        waves=[],
-        loads=[force | pulse],
-        record=record,
-        time={"duration": 6.5e-3},
-        continuum={},
-        numerics={},
-    )
-    assert LINE_FORCE.applies(scene)
-    found, exact = simulate(scene), LINE_FORCE.run(scene)
-    for name in ("velocity", "displacement"):
-        assert misfit(found[name].values, exact[name].values).max() < 1e-2
-
-
-def test_implicit_steps_agree_with_explicit_ones(struck):
-    """Both of second order in time: at 400 steps a period by the trapezoidal rule."""
-    implicit = {"scheme": "implicit", "steps_per_period": 400, "spectral_radius": 1.0}
-    one, other = (
-        simulate(struck(continuum={"size": 2.5, **keys}, time={"duration": 8e-3}))
-        for keys in ({}, implicit)
-    )
-    assert misfit(other.velocity.values, one.velocity.values).max() < 3e-3
-    assert gap_of_ledger(other) < 1e-10
 
 
 def test_implicit_steps_balance_dashpots_beside_a_prestress(rock_mass):
