@@ -28,17 +28,50 @@ for arguments in json.loads(sys.argv[1]):
             print("ended", code, file=stream, flush=True)
 """
 
+SCENE = ("guo-li-2002/fig-03", "--variant", "")
+RUN = ("run", *SCENE, "--engine", "continuum", "--model", "jointed")
+SHORT = (
+    *("--set", "pillar.length=3.0", "--set", "record.stress=[1.0]", "--set", "time.duration=2e-3"),
+    *("--set", "numerics.continuum.elements_per_block=1"),
+    *("--set", "numerics.continuum.scheme='explicit'"),
+)
+BLOCKS = ("run", *SCENE, "--engine", "dem", "--engine", "exact", "--model", "lattice", *SHORT)
+FRACTION = "numerics.continuum.step_fraction"
+LOST = (
+    *("--set", "time.duration=0.02", "--set", f"{FRACTION}=1.2"),
+    *("--set", "numerics.continuum.allow_unstable=true"),
+)
+TINY = ("--set", "pillar.length=1.0", "--set", "record.stress=[0.5]")
 
-@pytest.fixture(scope="session")
+#: What all processes are asked, one command after the other; its exit code and words of its line.
+MISTAKES = {
+    "a bad value": ((*RUN, "--set", "pillar.length=-1"), 2, "length = -1"),
+    "no scene": (("run", "no-such.toml"), 2, "no-such.toml"),
+    "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare runs in one process"),
+    "an explanation": (("explain", *SCENE), 2, "mpiexec: jointwave explain runs in one process"),
+    "a step above the critical": (
+        (*RUN, *SHORT, "--set", f"{FRACTION}=1.5"),
+        2,
+        "above the critical step",
+    ),
+    "a run that is lost": ((*RUN, *SHORT, *LOST), 3, "the continuum diverged"),
+    "more processes than cells": (
+        (*RUN, *SHORT, *TINY),
+        2,
+        "jointwave: mpiexec: -n = 3: is too many for a mesh of so few cells: 2",
+    ),
+    "a folder that cannot be": (("run", *SCENE, *SHORT), 2, "Not a directory"),
+}
+
+
+@pytest.fixture(scope="module")
 def under_mpi(mpiexec):
-    """Return a function that runs Python with these arguments in `count` processes.
-
-    It gives back the finished process, having checked its exit status.
-    """
+    """Return a function that runs Python with these arguments in three processes, checks its exit
+    status, and gives the finished process."""
     launcher, environment = mpiexec
 
-    def run(count, *arguments, code=0):
-        command = [*launcher, "-n", str(count), sys.executable, *map(str, arguments)]
+    def run(*arguments, code=0):
+        command = [*launcher, "-n", "3", sys.executable, *map(str, arguments)]
         done = subprocess.run(
             command, capture_output=True, text=True, env=environment, timeout=1800
         )
@@ -48,108 +81,40 @@ def under_mpi(mpiexec):
     return run
 
 
-@pytest.fixture(scope="session")
-def in_turn(under_mpi, without_warnings):
-    """Return a function that runs commands one after the other in the same `count` processes.
-
-    It gives for each its exit code, its output and the lines of its errors.
-    """
-
-    def run(count, *commands):
-        asked = json.dumps([[*map(str, arguments)] for arguments in commands])
-        done = under_mpi(count, "-c", IN_TURN, asked)
-        assert "Traceback" not in done.stderr
-        *out, rest = re.split(r"^ended (\d+)\n", done.stdout, flags=re.MULTILINE)
-        *said, _ = re.split(r"^ended \d+\n", done.stderr, flags=re.MULTILINE)
-        assert len(said) == len(commands) and rest == ""
-        lines = map(without_warnings, said)
-        return list(zip(map(int, out[1::2]), out[::2], lines, strict=True))
-
-    return run
-
-
-SCENE = ("guo-li-2002/fig-03", "--variant", "")
-CONTINUUM = ("--engine", "continuum", "--model", "jointed")
-SHORT = (
-    *("--set", "pillar.length=3.0", "--set", "record.stress=[1.0]", "--set", "time.duration=2e-3"),
-    *("--set", "numerics.continuum.elements_per_block=1"),
-    *("--set", "numerics.continuum.scheme='explicit'"),
-)
-
-
-BLOCKS = ("--engine", "dem", "--engine", "exact", "--model", "lattice")
-FRACTION = "numerics.continuum.step_fraction"
-ALLOWED = ("--set", "numerics.continuum.allow_unstable=true")
-
-#: What all processes are asked, one command after the other; its exit code and words of its line.
-MISTAKES = {
-    "a bad value": (("run", *SCENE, *CONTINUUM, "--set", "pillar.length=-1"), 2, "length = -1"),
-    "no scene": (("run", "no-such.toml", *CONTINUUM), 2, "no-such.toml"),
-    "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare runs in one process"),
-    "an explanation": (("explain", *SCENE), 2, "mpiexec: jointwave explain runs in one process"),
-    "a step above the critical": (
-        ("run", *SCENE, *CONTINUUM, *SHORT, "--set", f"{FRACTION}=1.5"),
-        2,
-        "above the critical step",
-    ),
-    "a run that is lost": (
-        (
-            *("run", *SCENE, *CONTINUUM, *SHORT, "--set", "time.duration=0.02"),
-            *("--set", f"{FRACTION}=1.2", *ALLOWED),
-        ),
-        3,
-        "the continuum diverged",
-    ),
-    "more processes than cells": (
-        (
-            *("run", *SCENE, *CONTINUUM, *SHORT, "--set", "pillar.length=1.0"),
-            *("--set", "record.stress=[0.5]"),
-        ),
-        2,
-        "jointwave: mpiexec: -n = 3: is too many for a mesh of so few cells: 2",
-    ),
-    "a folder that cannot be": (("run", *SCENE, *SHORT), 2, "Not a directory"),
-}
-
-
-@pytest.fixture
-def said(without_warnings):
-    """Return a function that gives the lines that the command itself has printed as errors."""
-
-    def errors(done):
-        assert "Traceback" not in done.stderr
-        lines = without_warnings(done.stderr)
-        return [line for line in lines if line.startswith("jointwave: ")]
-
-    return errors
+def said(stderr):
+    """Return the lines that the command itself has printed as errors."""
+    assert "Traceback" not in stderr
+    lines = [line for line in stderr.splitlines() if line.startswith("jointwave: ")]
+    return [line for line in lines if not line.startswith("jointwave: warning: ")]
 
 
 @pytest.fixture(scope="module")
-def told(in_turn, tmp_path_factory):
+def told(under_mpi, tmp_path_factory):
     """Return what three processes say of each mistake, its exit code and its folder, by name; and
-    what a run of rigid blocks after all of them prints."""
+    what a run of rigid blocks after all of them prints, in the same processes, and its folder."""
     place = tmp_path_factory.mktemp("mistakes")
-    folders = {name: place / str(i) for i, name in enumerate(MISTAKES)}
     (place / "file").write_text("")
+    folders = {name: place / str(i) for i, name in enumerate([*MISTAKES, "blocks"])}
     folders["a folder that cannot be"] = place / "file" / "folder"
+    asked = {name: arguments for name, (arguments, *_) in MISTAKES.items()}
+    asked["blocks"] = (*BLOCKS, "--json")
     commands = [
-        [*asked, *(("--out", folders[name]) if asked[0] != "explain" else ())]
-        for name, (asked, *_) in MISTAKES.items()
+        [*one, *(("--out", str(folders[name])) if one[0] != "explain" else ())]
+        for name, one in asked.items()
     ]
-    blocks = ["run", *SCENE, *BLOCKS, *SHORT, "--out", place / "blocks", "--json"]
-    *found, (code, out, said) = in_turn(3, *commands, blocks)
-    assert code == 0 and said == []
-    by_name = {
-        name: ([line for line in said if line.startswith("jointwave: ")], code, folders[name])
-        for name, (code, _, said) in zip(MISTAKES, found, strict=True)
-    }
-    return by_name, (out, place / "blocks")
+    done = under_mpi("-c", IN_TURN, json.dumps(commands))
+    *out, rest = re.split(r"^ended (\d+)\n", done.stdout, flags=re.MULTILINE)
+    *errors, _ = re.split(r"^ended \d+\n", done.stderr, flags=re.MULTILINE)
+    assert len(errors) == len(commands) and rest == ""
+    codes, printed = map(int, out[1::2]), out[::2]
+    ends = zip(map(said, errors), codes, printed, folders.values(), strict=True)
+    return dict(zip(folders, ends, strict=True))
 
 
 @pytest.mark.parametrize("name", MISTAKES)
 def test_what_goes_wrong_is_one_line_of_one_process(name, told):
     """All processes meet the same mistake: one says so, all leave with the same status."""
-    (line,), code, folder = told[0][name]
+    (line,), code, _, folder = told[name]
     assert code == MISTAKES[name][1] and MISTAKES[name][2] in line
     left = {path.name for path in folder.rglob("*.nc")} if folder.is_dir() else set()
     assert left == ({"continuum-jointed.stopped.nc"} if code == 3 else set())
@@ -157,9 +122,9 @@ def test_what_goes_wrong_is_one_line_of_one_process(name, told):
 
 def test_rigid_blocks_run_once_in_the_first_process(told):
     """Only the continuum is shared out; results, and what is said of them, are those of one."""
-    said, folder = told[1]
-    facts = json.loads(said)
-    assert [fact["engine"] for fact in facts] == ["dem", "lattice"]
+    errors, code, printed, folder = told["blocks"]
+    assert code == 0 and errors == []
+    assert [fact["engine"] for fact in json.loads(printed)] == ["dem", "lattice"]
     assert {path.name for path in folder.iterdir()} == {"dem.nc", "exact-lattice.nc"}
 
 
@@ -191,22 +156,22 @@ program.main()
     ],
 )
 def test_a_process_that_fails_alone_ends_all(
-    rank, function, error, code, words, under_mpi, said, tmp_path
+    rank, function, error, code, words, under_mpi, tmp_path
 ):
     """Others wait for what it would have sent them; its line is the only one, of a mistake of the
     program too."""
     program = SERIAL.format(error=error, rank=rank, function=function)
-    arguments = ("run", *SCENE, *CONTINUUM, *SHORT, "--out", tmp_path)
-    (line,) = said(under_mpi(3, "-c", program, *arguments, code=code))
+    done = under_mpi("-c", program, *RUN, *SHORT, "--out", tmp_path, code=code)
+    (line,) = said(done.stderr)
     assert all(word in line for word in words)
 
 
-def test_an_mpiexec_of_another_mpi_is_refused(said):
+def test_an_mpiexec_of_another_mpi_is_refused():
     """Its processes would not know of each other, and all write the same file."""
     environment = {**os.environ, "MV2_COMM_WORLD_SIZE": "4"}
     command = [sys.executable, "-m", "jointwave", "run", *SCENE]
     done = subprocess.run(command, capture_output=True, text=True, env=environment)
     assert done.returncode == 2
-    assert said(done) == [
+    assert said(done.stderr) == [
         "jointwave: mpiexec: -n = 4: belongs to another MPI than mpi4py, which sees one process"
     ]
