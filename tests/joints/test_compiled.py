@@ -10,17 +10,14 @@ import pytest
 
 from jointwave.joints.formula import formula
 from jointwave.joints.law import (
-    OF_PART,
     History,
     Law,
-    LawFlags,
-    law_at,
     law_of,
     parts_of,
     table_of,
     traction,
 )
-from jointwave.joints.tangent import Tangent, tangent
+from jointwave.joints.tangent import tangent
 
 N, DT, HISTORY = 64, 1e-5, History()
 ELASTIC = Law(9e9, shear_stiffness=3e9)
@@ -129,23 +126,6 @@ def test_absent_parts_leave_no_instruction(formula, products):
     brings all of them."""
     assert counts(ELASTIC, formula) == [0, 0, products]  # both shears are of one slip
     assert min(counts(ELASTIC._replace(friction=0.5), formula)) > 0
-
-
-def test_a_tangent_of_a_plain_joint_is_its_stiffness():
-    bare = law_of(table_of(Law(9e9)), 0), parts_of(Law(9e9))
-    found = tangent(*bare, (1e-6, 0.0, 0.0), (0.1, 0.0, 0.0), DT, HISTORY, 1e5)
-    assert found == Tangent(-9e9)
-
-
-def test_every_parameter_is_of_a_part_and_in_the_tables_of_kernels():
-    names = [name for own in OF_PART.values() for name in own]
-    assert sorted(["normal_stiffness", *names]) == sorted(Law._fields)
-    assert set(OF_PART) <= set(LawFlags._fields)
-    whole = Law(*(np.arange(2.0) + 10 * row for row in range(len(Law._fields))))
-    for j in range(2):
-        expected = Law(*(10.0 * row + j for row in range(len(Law._fields))))
-        assert law_of(table_of(whole), j) == expected
-        assert law_at(table_of(whole).ravel(), j, 2) == expected
 
 
 @formula

@@ -223,17 +223,10 @@ FALL = 1e5 / (1e-3 - 1e-4)
     ids=["no tension", "strength", "unloading", "contact", "broken"],
 )
 def test_normal_kinks_have_the_slope_of_either_side(law, before, gap, left, right):
-    """Without a dashpot the law is piecewise linear: the tangents 1 nm beside a kink are exact
-    difference quotients up to it, and at the kink it is one of the two."""
-
-    def t(at):
-        return normal_traction(*at_point(law), at, 0.0, max(before, at))
-
-    round_off = 8 * EPS * (1e5 + 1e9 * abs(gap)) / 1e-9
+    """Without a dashpot the law is piecewise linear: 1 nm beside a kink, and one of both at it."""
     for side, slope in ((-1e-9, left), (1e-9, right)):
         found = normal_tangent(*at_point(law), gap + side, 0.0, before, 0.0)
         assert found == pytest.approx(slope, rel=1e-5)
-        assert found == pytest.approx((t(gap + side) - t(gap)) / side, rel=1e-5, abs=round_off)
     at = normal_tangent(*at_point(law), gap, 0.0, before, 0.0)
     assert at == pytest.approx(right if gap == 1e-3 else left, rel=1e-12)
 
@@ -256,17 +249,3 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
     xx, xz, zz = shear
     turn = -3e9 / 2 * (np.eye(2) - np.outer(n, n))
     assert np.array([[xx, xz], [xz, zz]]) == pytest.approx(turn, rel=1e-12, abs=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("slip", "expected"),
-    [
-        (LIMIT * (1 - 1e-9), (0.0, -3e9, -3e9)),
-        (LIMIT * (1 + 1e-9), (4.5e9, 0.0, -3e9)),
-    ],
-)
-def test_shear_kink_has_the_slope_of_either_side(slip, expected):
-    """Inside elastic; outside all that is left is to turn, at first with the whole stiffness."""
-    found = tangent(*at_point(COULOMB), CLOSED, 0.0, (slip, 0.0), (0.0, 0.0), DT, Point(), 0.0)
-    assert (found.xn, found.xx, found.zz) == pytest.approx(expected, rel=1e-8)
-    assert (found.zn, found.xz) == (0.0, 0.0)

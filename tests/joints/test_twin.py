@@ -42,16 +42,11 @@ def twin_secant_stiffness(law, opening):
     return twin_strength_left(law, opening) / opening
 
 
-def twin_is_broken(law, opening):
-    """Return whether no tensile strength is left."""
-    return twin_strength_left(law, opening) == 0
-
-
 def twin_holds(law, gap, opening):
     """Return whether the faces hold each other: an open joint must be able to pull."""
     if gap <= 0:
         return True
-    return law.carries_tension is not False and not twin_is_broken(law, opening)
+    return law.carries_tension is not False and twin_strength_left(law, opening) > 0
 
 
 def twin_closure_traction(law, closure):
@@ -141,23 +136,10 @@ def twin_slide(law, wears, size, strength, path, dt):
 def twin_shear_traction(law, slip_x, slip_z, rate_x, rate_z):
     """Return (t_x, t_z) of a spring and a dashpot in parallel: Guo & Li (2002), equation (2)."""
     c = law.shear_viscosity or 0.0
-    return (
-        -law.shear_stiffness * slip_x - c * rate_x,
-        -law.shear_stiffness * slip_z - c * rate_z,
-    )
+    return -law.shear_stiffness * slip_x - c * rate_x, -law.shear_stiffness * slip_z - c * rate_z
 
 
-def twin_shear_return(
-    law,
-    ex,
-    ez,
-    ex_old,
-    ez_old,
-    rate_x,
-    rate_z,
-    tau,
-    dt,
-):
+def twin_shear_return(law, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
     """Return (t_x, t_z, ex, ez, slipped) from the trial elastic slip and the strength tau.
 
     What exceeds the strength is scaled back along its direction. The elastic slip is then where
@@ -181,9 +163,8 @@ def twin_rate_and_state(law, t_n, cohesion, state, size, dt):
 
     Dieterich (1979), Ruina (1983); mu = a asinh(e^E), Rice & Ben-Zion (1996).
     """
-    a, b, length, begun = (
-        law.direct_effect, law.evolution_effect, law.critical_slip_distance, law.initial_state
-    )  # fmt: skip
+    a, b, length = law.direct_effect, law.evolution_effect, law.critical_slip_distance
+    begun = law.initial_state
     theta, stiffness = begun * exp(state), law.shear_stiffness + (law.shear_viscosity or 0.0) / dt
 
     def aged(rate):
@@ -215,15 +196,7 @@ def twin_rate_and_state(law, t_n, cohesion, state, size, dt):
     return strength, log(aged(exp(rate)) / begun)
 
 
-def twin_traction(
-    law,
-    gap,
-    gap_rate,
-    slip,
-    slip_rate,
-    dt,
-    history,
-):
+def twin_traction(law, gap, gap_rate, slip, slip_rate, dt, history):
     """Return (t_n, t_x, t_z, history) after a step: the normal part, then shear under it.
 
     The first slip of a point leaves no more than the residual cohesion.
@@ -452,27 +425,16 @@ def test_unlike_joints_behave_as_if_alone(data):
 
     Where a joint lacks a strength that others have, an unlimited one stands in.
     """
-    alone = [
-        data.draw(one_law("dashpots", "ties", "")),
-        data.draw(one_law("dashpots", "no tension", "cf")),
-        data.draw(one_law("dashpots", "softening", "")),
-        data.draw(one_law("dashpots", "closes between rock", "cf")),
-        data.draw(one_law("dashpots", "softening", "cfr")),
-        data.draw(one_law("dashpots", "softening", "cfdw")),
-        data.draw(one_law("dashpots", "softening", "cfiI")),
-        data.draw(rated("dashpots", "softening", "cf")),
-    ]
+    unlike = [("ties", ""), ("no tension", "cf"), ("softening", ""), ("closes between rock", "cf")]
+    unlike += [("softening", shears) for shears in ("cfr", "cfdw", "cfiI")]
+    alone = [data.draw(one_law("dashpots", *one)) for one in unlike]
+    alone.append(data.draw(rated("dashpots", "softening", "cf")))
     without = {"friction": 0.0, "carries_tension": True, "rock_compliance": 0.0}
     without |= {"dynamic_friction": 0.0, "dilation": 0.0, "direct_effect": 0.0}
-    parts = {
-        name: np.array(
-            [
-                without.get(name, UNLIMITED) if part is None else part
-                for part in (getattr(one, name) for one in alone)
-            ]
-        )
-        for name in Law._fields
-    }
+    parts = {}
+    for name, values in zip(Law._fields, zip(*alone, strict=True), strict=True):
+        absent = without.get(name, UNLIMITED)
+        parts[name] = np.array([absent if one is None else one for one in values])
     mixed = Law(**parts)
     path = data.draw(paths(alone[-1]))
     for j, one in enumerate(alone):
