@@ -26,20 +26,6 @@ def row(pillar):
     return lambda **changes: pillar(**{**deepcopy(SHORT), **changes})
 
 
-@pytest.fixture(scope="module")
-def solved():
-    """Return a function of a name, what solves a scene, and a scene: its result, found once in a
-    file. Exact ones serve all scenes of a name, whose steps alone differ."""
-    found = {}
-
-    def once(name, solve, scene):
-        if name not in found:
-            found[name] = solve(scene)
-        return found[name]
-
-    return once
-
-
 @pytest.fixture
 def plain(monkeypatch):
     """Let blocks take their steps as plain Python, on one thread: nothing is compiled."""

@@ -4,13 +4,11 @@ Every mode of the assembled masses and springs stands in leapfrog's steps as a c
 frequency Omega, sin(Omega dt / 2) = omega dt / 2, exactly.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from closed_forms.bloch import leapfrog, modes, periodic
-from jointwave.cases.validate import validated
+from jointwave.cases import load_tables
 from jointwave.dem.kernel.leapfrog import march
 from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
@@ -57,7 +55,7 @@ def wall(dim, rule):
         "time": {"duration": 0.01},
         "record": {"points": [[0.9, *([0.25] * (dim - 2)), 0.45]]},
     }
-    return validated(tables, Path("wall.toml"), frozenset())
+    return load_tables(tables)
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -1,15 +1,14 @@
 """Blocks pay only for what their scene calls for, proved on what is compiled, without a clock."""
 
-from pathlib import Path
-
 import pytest
 
-from jointwave.cases.validate import validated
+from jointwave.cases import load_tables
 from jointwave.dem import simulate
 from jointwave.dem.kernel import leapfrog
 
 SEVERAL = r" <\d+ x double>"  # of several contacts at once
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
+SLIP = {"friction_angle": 20.0}
 NORMALS = {2: [(0.0, 0.0), (90.0, 0.0)], 3: [(0.0, 0.0), (90.0, 0.0), (90.0, 90.0)]}
 
 
@@ -29,7 +28,7 @@ def lattice(dim=2, joints=(), **tables):
         "time": {"duration": 1e-3},
         "record": {"points": [[0.5] * dim], "energy": False},
     }
-    return validated(own | tables, Path("lattice.toml"), frozenset())
+    return load_tables(own | tables)
 
 
 @pytest.fixture
@@ -75,25 +74,6 @@ def test_steps_count_no_references_to_arrays(counted):
     """Which blocks that slip in space, and have every kind of array, would do by the hundred."""
     sides = {"boundaries": {"top": "quiet"}, "record": {"points": [[0.5] * 3], "energy": True}}
     assert counted(lattice(3, SLIP, **sides), r"(?:tail )?call void @NRT_incref\(\S+") == [0]
-
-
-SLIP = {"friction_angle": 20.0}
-ADDED = {
-    "dashpots": ("fmul", {"joints": {"damping_ratio": 0.02}}),
-    "no tension": ("fcmp", {"joints": {"tension": False}}),
-    "quiet sides": ("fadd", {"boundaries": {"top": "quiet"}}),
-    "mass damping": ("fmul", {"damping": {"mass_proportional": 10.0}}),
-    "local damping": ("fcmp", {"damping": {"local": 0.5}}),
-    "gravity": ("fadd", {"gravity": {"static": False}}),
-    "ledger": ("fadd", {"record": {"points": [[0.5, 0.5]], "energy": True}}),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("kind", "changes"), ADDED.values(), ids=ADDED)
-def test_each_effect_adds_instructions(counted, kind, changes):
-    """So blocks without it have none of them."""
-    assert counted(lattice(), kind) < counted(lattice(**changes), kind)
 
 
 @pytest.mark.parametrize(

@@ -1,17 +1,15 @@
 """Contact points of the faces of blocks, in the plane and in space."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from jointwave.cases.validate import validated
+from jointwave.cases import load_tables
 from jointwave.dem.prepare import prepared
 
 ASKEW = {2: [(20.0,), (75.0,), (140.0,)], 3: [(15.0, 40.0), (80.0, 100.0), (60.0, 200.0)]}
 
 
-def blocks_of(dim, attitudes, **rule):
+def blocks_of(dim, rule):
     """Return blocks between joints without tension, on a fixed bottom, most askew to the sides."""
     law = {"spacing": 1.3, "tension": False, "normal_stiffness": 1e10, "shear_stiffness": 5e9}
     tables = {
@@ -23,14 +21,14 @@ def blocks_of(dim, attitudes, **rule):
             | dict(zip(("dip", "dip_direction"), one, strict=False))
             | law
             | rule
-            for k, one in enumerate(attitudes)
+            for k, one in enumerate(ASKEW[dim])
         ],
         "boundaries": {"bottom": "fixed"},
         "gravity": {},
         "time": {"duration": 1e-3},
         "record": {"points": [[2.1, 2.2, 1.4][:dim]]},
     }
-    return prepared(validated(tables, Path("blocks.toml"), frozenset())).blocks
+    return prepared(load_tables(tables)).blocks
 
 
 @pytest.mark.parametrize("rule", [{}, {"point_rule": "gauss"}], ids=["vertices", "gauss"])
@@ -38,7 +36,7 @@ def blocks_of(dim, attitudes, **rule):
 def test_points_have_the_moments_of_faces(dim, rule):
     """Area, centroid and second moments of all faces, those of the fixed side too, with no weight
     below zero; polygons of some sides in space."""
-    blocks = blocks_of(dim, ASKEW[dim], **rule)
+    blocks = blocks_of(dim, rule)
     met, places, area = blocks.contacts, blocks.points[..., :-1], blocks.points[..., -1]
     size = np.sqrt(np.trace(met.spread, axis1=1, axis2=2))
     assert (area >= 0).all() and len(set(np.diff(met.outlines.first))) == (4 if dim == 3 else 1)
@@ -48,17 +46,3 @@ def test_points_have_the_moments_of_faces(dim, rule):
     second = places.swapaxes(1, 2) @ (area[..., None] * places) / met.area[:, None, None]
     scale = size[:, None, None] ** 2
     np.testing.assert_allclose(second / scale, met.spread / scale, rtol=0, atol=1e-9)
-
-
-@pytest.mark.parametrize("dim", [2, 3])
-def test_faces_bear_at_their_corners(dim):
-    """Those between blocks; contacts with walls have other points."""
-    blocks = blocks_of(dim, ASKEW[dim])
-    met, own = blocks.contacts, (blocks.contacts.blocks < blocks.count).all(axis=1).sum()
-    at = met.centre[:, None] + blocks.points[..., :-1] @ met.frame[:, 1:]
-    for c, points in enumerate(at[:own]):
-        corners = met.outlines.of(c)
-        away = np.linalg.norm(corners[:, None] - points, axis=2)
-        assert (away.argmin(axis=1) == np.arange(len(corners))).all() and away.min(
-            axis=1
-        ).max() < 1e-12

@@ -10,21 +10,20 @@ from scipy.linalg import null_space
 from jointwave.cases import load
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
-from jointwave.cases.geometry.locate import blocks_at, contact_at, sides_at
+from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.blocks.rock_mass import blocks_of as rigid_blocks
 from jointwave.dem.contacts.faces import Contacts, frames_of
 from jointwave.dem.readings.receivers import (
-    Stencil,
     everywhere,
     read_by,
     stencils_in_rock,
     stencils_on_joints,
 )
-from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, corner_motion, triangles
-from jointwave.dem.readings.waveforms import at_points, jumps, mean_stress, quantities
+from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, triangles
+from jointwave.dem.readings.waveforms import at_points, mean_stress, quantities
 from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
@@ -95,28 +94,13 @@ def inside(found, count, seed=0):
 
 
 @DIMENSIONS
-def test_frames_are_right_handed(dim):
-    normal = np.random.default_rng(1).normal(size=(20, dim))
-    normal = np.concatenate([normal / np.linalg.norm(normal, axis=1)[:, None], np.eye(dim)])
-    frame = frames_of(normal)
-    np.testing.assert_allclose(
-        frame @ frame.swapaxes(1, 2), np.tile(np.eye(dim), (len(normal), 1, 1)), atol=1e-15
-    )
-    assert (frame[:, 0] == normal).all()
-    if dim > 1:
-        np.testing.assert_allclose(np.linalg.det(frame), 1, rtol=1e-14)
-
-
-@DIMENSIONS
 def test_an_affine_motion_of_blocks_in_rock_is_that_of_every_point(dim):
     """Cuts through intact rock: u = b + A x from the centroids, whatever the blocks' rotations."""
     found, draw = blocks(dim), np.random.default_rng(2).normal
     points, freedoms = inside(found, 40), dim + ROTATIONS[dim]
     sides = sides_at(found, points, 0)
     stencils = stencils_in_rock(found, points, sides, 0)
-    receivers = read_by(
-        found.volume, all_faces(found)[0], freedoms_of(dim, ROTATIONS[dim]), stencils, []
-    )
+    receivers = at(found, stencils)
     A, b = draw(size=(dim, dim)), draw(size=dim)
     motion = draw(size=(found.count, freedoms, 1))
     motion[:, :dim, 0] = b + found.centroid @ A.T
@@ -137,9 +121,7 @@ def test_points_between_joints_move_with_their_rigid_block(dim):
     sides = sides_at(found, points, dim)
     assert [len(own) for own in sides] == [1] * 20 + [2] * 5
     stencils = stencils_in_rock(found, points, sides, dim)
-    receivers = read_by(
-        found.volume, all_faces(found)[0], freedoms_of(dim, ROTATIONS[dim]), stencils, []
-    )
+    receivers = at(found, stencils)
     b, phi = draw(size=dim), draw(size=freedoms - dim)
 
     def rigid(x):
@@ -209,56 +191,28 @@ def test_a_stress_in_equilibrium_is_the_mean_stress_of_every_block(dim, uniform)
 
 
 @DIMENSIONS
-def test_blocks_that_do_not_rotate_have_no_moments_to_read(dim):
-    found = blocks(dim)
-    faces, centroid, second = all_faces(found)
-    contact = samples_of(faces, centroid, second, *field(dim)[:1], np.zeros((dim,) * 3))
-    fewer = np.concatenate([contact[:, :dim], contact[:, -dim:]], axis=1)
-    receivers = everywhere(found.volume, faces)
-    whole, part = mean_stress(receivers, contact), mean_stress(receivers, fewer)
-    np.testing.assert_allclose(part, whole, rtol=0, atol=1e-13 * np.abs(whole).max())
-
-
-@DIMENSIONS
 def test_what_acts_from_outside_counts_as_contacts_do(dim):
-    """The boundary as walls, or as sums of arm times force."""
+    """The boundary as walls, or as sums of arm times force; and blocks that do not rotate have no
+    moments to read."""
     found = blocks(dim)
     faces, centroid, second = all_faces(found)
     contact = samples_of(faces, centroid, second, *field(dim))
-    whole = mean_stress(everywhere(found.volume, faces), contact)
-    inner = np.arange(len(found.contacts))
-    outside = np.zeros((found.count, dim, dim, 1))
-    outer = everywhere(found.volume, faces)
+    receivers, inner = everywhere(found.volume, faces), np.arange(len(found.contacts))
+    whole = mean_stress(receivers, contact)
     only = contact.copy()
     only[inner] = 0
-    part = mean_stress(outer, only)[:, 0] * -found.volume[:, None]
+    outside = np.zeros((found.count, dim, dim, 1))
+    part = mean_stress(receivers, only)[:, 0] * -found.volume[:, None]
     for (i, j), values in zip(stress_components(dim).values(), part.T, strict=True):
         outside[:, i, j, 0] = outside[:, j, i, 0] = values
-    inner_faces = faces.some(inner)
-    found_stress = mean_stress(everywhere(found.volume, inner_faces), contact[inner], outside)
-    np.testing.assert_allclose(found_stress, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
+    within = everywhere(found.volume, faces.some(inner))
+    other = mean_stress(within, contact[inner], outside)
+    np.testing.assert_allclose(other, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
 
-
-@DIMENSIONS
-def test_a_rigid_rotation_gives_no_relative_motion_and_no_stress(dim):
-    """Springs between blocks feel the motion of both at the contact, whose arms must fit."""
-    found = blocks(dim)
-    freedoms, draw = dim + ROTATIONS[dim], np.random.default_rng(5).normal
-    faces = all_faces(found)[0].some(np.arange(len(found.contacts)))
-    phi = draw(size=freedoms - dim)
-    turn = turning(found.centroid, freedoms)[..., dim:] @ phi
-    motion = np.concatenate([turn, np.tile(phi, (found.count, 1))], axis=1)
-    i, j = (
-        motion[k, :dim] + np.einsum("naf,nf->na", turning(faces.arm[:, side], freedoms), motion[k])
-        for side, k in enumerate(faces.blocks.T)
-    )
-    gap = np.einsum("cak,ck->ca", faces.frame, j - i)
-    contact = np.zeros((len(gap), dim * (dim + 1), 1))
-    contact[:, :dim, 0], contact[:, -dim:, 0] = -1e9 * faces.area[:, None] * gap, gap
-    scale = 1e9 * np.abs(motion).max()
-    receivers = everywhere(found.volume, faces)
-    assert np.abs(mean_stress(receivers, contact)).max() <= 1e-13 * scale
-    assert np.abs(jumps(receivers, contact)).max() < 1e-13 * np.abs(motion).max(initial=1)
+    uniform = samples_of(faces, centroid, second, field(dim)[0], np.zeros((dim,) * 3))
+    fewer = np.concatenate([uniform[:, :dim], uniform[:, -dim:]], axis=1)
+    whole, part = mean_stress(receivers, uniform), mean_stress(receivers, fewer)
+    np.testing.assert_allclose(part, whole, rtol=0, atol=1e-13 * np.abs(whole).max())
 
 
 @DIMENSIONS
@@ -298,76 +252,17 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
             np.testing.assert_allclose(slip, (7 + 3e-10) * expected[~last, 1:], rtol=0, atol=1e-12)
 
 
-@DIMENSIONS
-def test_traction_and_slip_do_not_depend_on_the_numbers_of_blocks(dim):
-    """Of the side above a joint: contacts are the same with their blocks exchanged."""
-    draw, count = np.random.default_rng(9).normal, 12
-    normal = draw(size=(count, dim))
-    normal[:dim], normal[-1, -1] = np.eye(dim), 1e-17 if dim > 1 else 1.0
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    jump, force, found = draw(size=(count, dim)), draw(size=(count, dim)), []
-    for sign in (1.0, -1.0):
-        frame = frames_of(sign * normal)
-        rows = [np.einsum("cak,ck->ca", frame, sign * one) for one in (force, jump)]
-        faces = Contacts(
-            np.tile([0, 1], (count, 1)),
-            np.ones(count),
-            frame,
-            arm=np.zeros((count, 2, dim)),
-            excess=np.zeros((count, 2)),
-        )
-        stencils = [Stencil(k, [k], np.ones(1), np.zeros(dim)) for k in range(count)]
-        receivers = read_by(np.ones(2), faces, freedoms_of(dim, 0), [], stencils)
-        contact = np.concatenate(rows, axis=1)[:, :, None] * [0.0, 1.0]
-        found.append(quantities(receivers, *np.zeros((2, 0, dim, 2)), contact))
-    for name, values in found[0].items():
-        np.testing.assert_allclose(found[1][name], values, rtol=0, atol=1e-14)
-    if dim == 3:  # by hand: neither vertical nor level ones
-        n, above = normal[3:-1], np.sign(normal[3:-1, 2:])
-        strike = above * np.cross([0.0, 0.0, 1.0], n)
-        axes = strike, above * np.cross(n, strike)
-        slip = [(above * jump[3:-1] * x).sum(axis=1) / np.linalg.norm(x, axis=1) for x in axes]
-        np.testing.assert_allclose(found[0]["slip"][3:-1, 1].T, slip, rtol=0, atol=1e-13)
-
-
-@DIMENSIONS
-def test_points_are_found_in_blocks_and_at_contacts(dim):
-    found = blocks(dim)
-    contacts, normal = found.contacts, found.contacts.normal
-    assert [one.tolist() for one in blocks_at(found, found.centroid)] == [
-        [k] for k in range(found.count)
-    ]
-    on = blocks_at(found, contacts.centroid)
-    assert [one.tolist() for one in on] == contacts.blocks.tolist()
-    assert blocks_at(found, -np.ones((1, dim)))[0].size == 0
-    assert sides_at(found, contacts.centroid, 0) == contacts.blocks[:, :1].tolist()
-    beside = contacts.centroid + 1e-6 * normal
-    np.testing.assert_array_equal(contact_at(found, beside, dim), np.arange(len(contacts)))
-    with pytest.raises(ValueError, match="no contact"):
-        contact_at(found, beside, 0)
-
-
-@pytest.mark.parametrize("dim", (2, 3))
-def test_snapshots_show_whole_blocks_that_move_rigidly(dim):
-    """Triangles have the area of polygons, or of the faces of polyhedra."""
-    found, draw = blocks(dim), np.random.default_rng(7).normal
+def test_snapshots_show_whole_blocks():
+    """The triangles of polyhedra look outward and enclose their volume."""
+    found = blocks(3)
     owner, normal, pieces = found.faces(TOLERANCE)
-    if dim == 3:
-        cells, piece = triangles(pieces)
-        x = pieces.corners[cells]
-        area = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) / 2
-        outward = (area * normal[piece]).sum(axis=1)
-        np.testing.assert_allclose(outward, np.linalg.norm(area, axis=1), rtol=1e-9, atol=1e-15)
-        volume = np.bincount(owner[piece], (x[:, 0] * area).sum(axis=1)) / 3
-        np.testing.assert_allclose(volume, found.volume, rtol=1e-10)
-    freedoms = dim + ROTATIONS[dim]
-    block = np.repeat(owner, np.diff(pieces.first))
-    motion = draw(size=(3, found.count, freedoms))
-    arms = pieces.corners - found.centroid[block]
-    moved = corner_motion(motion, block, arms)
-    pair = np.flatnonzero(np.diff(block) == 0)
-    edge, stretch = np.diff(arms, axis=0)[pair], np.diff(moved, axis=1)[:, pair]
-    assert np.abs((edge * stretch).sum(axis=2)).max() < 1e-13  # lengths stay, to first order
+    cells, piece = triangles(pieces)
+    x = pieces.corners[cells]
+    area = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) / 2
+    outward = (area * normal[piece]).sum(axis=1)
+    np.testing.assert_allclose(outward, np.linalg.norm(area, axis=1), rtol=1e-9, atol=1e-15)
+    volume = np.bincount(owner[piece], (x[:, 0] * area).sum(axis=1)) / 3
+    np.testing.assert_allclose(volume, found.volume, rtol=1e-10)
 
 
 def test_snapshots_of_a_scene_in_space(tmp_path):

@@ -1,9 +1,8 @@
-"""What a run leaves behind: snapshots, checkpoints, the law and the gap of its joints."""
+"""What a run leaves behind: snapshots, the law and the gap of its joints."""
 
 import numpy as np
 import pytest
 
-from jointwave.cases.errors import InterruptedRun
 from jointwave.dem import simulate
 from jointwave.results.snapshots import snapshots_of
 
@@ -46,19 +45,6 @@ def test_snapshots_are_the_motion_of_the_blocks_and_change_nothing(crossed):
     of_block = found.stress[:, cell]  # the receiver's: the block moves as it is
     assert np.abs(of_block - filmed.stress.values[0, ::20]).max() < 1e-12 * np.abs(of_block).max()
     assert np.abs(found.velocity).max() > 0.05
-
-
-def test_a_run_that_goes_on_is_the_same_to_the_last_bit(crossed, joint, keeper_at):
-    """Waves, joints that slip with dashpots, the ledger and snapshots, from the middle on."""
-    slips = [joint(through=None, friction_angle=15.0, damping_ratio=0.02, **one) for one in CROSSED]
-    own = crossed(joint_sets=slips, record={"fields": 2e-3})
-    whole, keeper = simulate(own), keeper_at(40)
-    with pytest.raises(InterruptedRun):
-        simulate(own, keeper=keeper)
-    assert 40 <= keeper.done < 100
-    again = simulate(own, keeper=keeper)
-    for name in whole.data_vars:
-        assert (whole[name].values == again[name].values).all(), name
 
 
 def test_the_gap_and_the_slip_are_those_of_the_joint_alone(crossed, joint):

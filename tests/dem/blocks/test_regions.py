@@ -67,20 +67,16 @@ def test_waves_in_layers_are_the_exact_ones(rock_mass, wave, kind, least):
     assert fine[2] < 1e-11
 
 
-def test_waves_need_the_field_of_layers(rock_mass, wave):
-    """The engine alone knows waves of one rock; boundaries that are not parallel know none."""
-    scene = layers(rock_mass, wave, "P", 1.0)
-    with pytest.raises(SceneError, match="waves = 1: cross several rocks"):
-        simulate(scene)
-    dips = [SOFT, HARD | {"dip": 20.0}]
-    quiet = {"left": "quiet", "right": "quiet"}
-    with pytest.raises(SceneError, match="field is not known: joints are not parallel"):
-        field_of(layers(rock_mass, wave, "P", 1.0, regions=dips, boundaries=quiet))
-
-
-def test_periodic_sides_need_boundaries_from_one_to_the_other(rock_mass, wave):
-    with pytest.raises(SceneError, match=r"regions\[0\].dip = 10.0: must be parallel to the x"):
-        layers(rock_mass, wave, "P", 1.0, regions=[SOFT | {"dip": 10.0}])
+@pytest.mark.parametrize(
+    ("regions", "words"),
+    [
+        ([SOFT | {"dip": 10.0}], r"regions\[0\].dip = 10.0: must be parallel to the x"),
+        ([SOFT, HARD], "waves = 1: cross several rocks"),  # the engine alone knows those of one
+    ],
+)
+def test_what_layers_cannot_be(rock_mass, wave, regions, words):
+    with pytest.raises(SceneError, match=words):
+        simulate(layers(rock_mass, wave, "P", 1.0, regions=regions))
 
 
 def test_every_region_needs_blocks(rock_mass, wave):
@@ -88,6 +84,13 @@ def test_every_region_needs_blocks(rock_mass, wave):
     numerics = {"dem": {"block": None}}
     with pytest.raises(SceneError, match="and region 'soft' has no joints"):
         simulate(rock_mass(regions=[SOFT], joint_sets=[seam], numerics=numerics, waves=[wave()]))
+
+
+def test_boundaries_that_are_not_parallel_know_no_field(rock_mass, wave):
+    changes = {"regions": [SOFT, HARD | {"dip": 20.0}]}
+    changes |= {"boundaries": {"left": "quiet", "right": "quiet"}}
+    with pytest.raises(SceneError, match="field is not known: joints are not parallel"):
+        field_of(layers(rock_mass, wave, "P", 1.0, **changes))
 
 
 def test_an_outline_in_a_lattice_closes_its_ledger(rock_mass, wave):

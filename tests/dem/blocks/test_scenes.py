@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.errors import SceneError
 from jointwave.cases.incident import free_field
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.dem import simulate
 
 SINE = {"shape": "sine", "amplitude": 1e6, "period": 0.002}
 PRESSURE = SINE | {"kind": "pressure", "side": "bottom"}
-PERIODIC = {"left": "periodic", "right": "periodic"}
 
 
 def total(result):
@@ -58,13 +57,7 @@ FAILS = {"tensile_strength": 2e5, "fracture_energy": 1.0, "damping_ratio": 0.02}
 
 @pytest.mark.parametrize(
     ("end", "joint"),
-    [
-        ("free", {}),
-        ("quiet", {}),
-        ("fixed", {}),
-        ("free", FAILS),
-        ("quiet", FAILS),
-    ],
+    [("quiet", {}), ("fixed", {}), ("free", FAILS)],
 )
 def test_a_column_is_the_chain(end, joint, rock_mass, pillar):
     """Joints of 1e11 Pa/m in rock of 5e10 Pa, 0.5 m apart: K' = 5e10 Pa/m, E_eq = 2.5e10 Pa. At
@@ -122,47 +115,6 @@ def test_a_row_is_the_row_in_space(law, rock_mass, pillar, plain):
         assert energy.sel(term="friction") > 0.01 * energy.sel(term="work")
 
 
-def turned(scene, angle, shift):
-    """Return tables of a scene that is turned by an angle, degrees, and shifted, as an outline."""
-    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    turn = np.array([[c, -s], [s, c]])
-
-    def place(points):
-        return (np.atleast_2d(points) @ turn.T + shift).tolist()
-
-    (joint,), (wave,) = scene.joint_sets, scene.waves
-    along = turn @ wave.direction
-    return turn, {
-        "domain": {"size": None, "outline": place(scene.domain.corners)},
-        "joint_sets": [
-            joint.model_dump(exclude_none=True)
-            | {"dip": joint.dip + angle, "through": place(joint.through)[0]}
-        ],
-        "waves": [wave.model_dump(exclude_none=True) | {"direction": along.tolist()}],
-        "boundaries": None,
-        "record": {"points": place(scene.record.points), "joints": place(scene.record.joints)},
-    }
-
-
-def test_a_scene_that_is_turned_and_shifted_records_the_same(rock_mass, wave, joint):
-    """To 1e-12: the round-off of coordinates near 100 m over blocks of 1 m, and of some 300 steps.
-    Joints that slip, so that the whole law turns; all sides quiet, which an outline's sides are."""
-    slips = joint(friction_angle=20.0, cohesion=1e4, damping_ratio=0.02)
-    own = rock_mass(joint_sets=[slips], waves=[wave(direction=[0.6, 0.8])])
-    turn, tables = turned(own, 25.0, [70.0, -30.0])
-    tables["boundaries"] = dict.fromkeys(("left", "right", "bottom", "top"), None) | {
-        "outline": "quiet"
-    }
-    one, other = simulate(own), simulate(rock_mass(**tables))
-    assert np.abs(one.slip).max() > 1e-6
-    for name in ("velocity", "displacement"):
-        values = other[name].values @ turn
-        assert np.abs(values - one[name].values).max() < 1e-12 * np.abs(one[name].values).max()
-    for name in ("traction", "gap", "slip"):
-        off = np.abs(other[name].values - one[name].values).max()
-        assert off < 1e-12 * np.abs(one[name].values).max()
-
-
 @pytest.mark.parametrize("exact", [False, True], ids=["free field", "exact field"])
 def test_the_ledger_of_waves_and_quiet_sides_closes(exact, rock_mass, wave):
     """What waves put in is stored or leaves through the sides, to round-off."""
@@ -171,30 +123,6 @@ def test_the_ledger_of_waves_and_quiet_sides_closes(exact, rock_mass, wave):
     off, largest = total(result)
     assert off < 1e-12 * largest
     assert result.energy.sel(term="boundary")[-1] > 0.1 * largest
-
-
-@pytest.mark.parametrize("kind", ["P", "S"])
-def test_waves_across_a_lattice_are_those_of_the_rock(kind, rock_mass, wave):
-    """Rock with nu = 0.25 in periodic squares, the wave along a direction of them, against the free
-    field: speed and impedance of the lattice are the rock's, so that halving the blocks leaves a
-    quarter of the error, and what quiet sides reflect falls alike."""
-    axis, errors = "PS".index(kind), []
-    for block in (0.5, 0.25):
-        own = rock_mass(
-            domain={"size": [block, 20.0]},
-            joint_sets=None,
-            boundaries=PERIODIC,
-            waves=[wave(kind=kind)],
-            record={"points": [[block / 2, 5.1], [block / 2, 16.3]], "joints": None},
-            numerics={"dem": {"block": block, "step_fraction": 0.5}},
-            time={"duration": 0.03},
-        )
-        found, places = simulate(own), np.array(own.record.points)
-        exact = free_field(own)(places, found.time.values).velocity[:, 1 - axis]
-        off = found.velocity[:, :, 1 - axis].values - exact
-        errors.append(np.abs(off).max() / np.abs(exact).max())
-    assert errors[0] < 0.05
-    assert 3 < errors[0] / errors[1] < 5.5
 
 
 PRESSED = {"xx": 2e6, "yy": 5e6, "xy": -1e6}
@@ -231,47 +159,22 @@ def test_a_prestress_that_joints_cannot_carry_is_refused_in_one_line(law, what, 
     assert "\n" not in str(caught.value)
 
 
-def test_gravity_at_rest_is_the_weight_above(rock_mass):
-    """A column of rock, nu = 0: sigma_yy = rho g (h - y) in the middle of each block."""
-    own = rock_mass(
-        domain={"size": [2.0, 6.0]},
-        rock={"intact_poisson": 0.0},
-        joint_sets=None,
-        boundaries={"left": "free", "right": "free", "bottom": "fixed", "top": "free"},
-        gravity={"direction": [0.0, -1.0]},
-        record={"points": [[0.5, 0.5], [1.5, 3.5]], "joints": None},
-    )
-    result = simulate(own)
-    weight = 2600 * 9.81 * (6 - np.array([0.5, 3.5]))
-    assert result.stress.values[:, :, 1] == pytest.approx(np.tile(weight[:, None], 101), rel=1e-6)
-    assert np.abs(result.velocity).max() < 1e-7 * 9.81 * 0.01
-    assert result.starts == "at rest under gravity"
-
-
-def test_a_shaken_base_moves_all_like_a_force_of_inertia(rock_mass):
-    """Slowly shaken, blocks on a base follow it; the ledger closes with the work of the base."""
+def test_the_ledger_of_a_shaken_base_closes(rock_mass):
+    """With the work of the base, on which blocks end a slow shake where it does."""
+    base = {"kind": "base", "side": "bottom", "direction": [0.8, 0.6], "shape": "sine"}
+    base |= {"quantity": "velocity", "amplitude": 0.1, "period": 0.2, "cycles": 1}
     own = rock_mass(
         domain={"size": [3.0, 4.0]},
         joint_sets=None,
         boundaries={"left": "free", "right": "free", "bottom": "fixed", "top": "free"},
-        loads=[
-            {
-                "kind": "base", "side": "bottom", "direction": [0.8, 0.6], "shape": "sine",
-                "quantity": "velocity", "amplitude": 0.1, "period": 0.2, "cycles": 1,
-            }
-        ],
+        loads=[base],
         record={"points": [[1.5, 3.5]], "joints": None, "interval": 1e-3},
         time={"duration": 0.1},
-    )  # fmt: skip
+    )
     result = simulate(own)
     off, largest = total(result)
     assert off < 1e-12 * largest
-    along = np.array([0.8, 0.6])
-    base = 0.1 * np.sin(2 * np.pi * result.time.values / 0.2)[:, None] * along
-    # The top lags by up to a h / b of the acceleration a that the base begins with, then swings.
-    lag = 0.1 * 2 * np.pi / 0.2 * 4.0 / 2774
-    assert np.abs(result.velocity.values[0] - base).max() < 2 * lag < 0.1 * 0.1
-    moved = 0.1 * 0.2 / np.pi * along  # half a cycle
+    moved = 0.1 * 0.2 / np.pi * np.array([0.8, 0.6])  # half a cycle
     assert result.displacement.values[0, -1] == pytest.approx(moved, rel=0.02)
 
 
@@ -287,16 +190,3 @@ def test_a_rigid_motion_meets_no_resistance(rock_mass, joint):
     assert np.abs(result.velocity.values - fall).max() < 1e-13
     # The last digit of a fall of 0.5 mm is 1e-19 m, of which 1e10 Pa/m makes 1e-9 Pa.
     assert np.abs(result.traction).max() < 1e-6
-
-
-def test_an_unstable_run_is_stopped_with_what_is_sound(rock_mass, wave):
-    """Three times the critical step: the monitor ends the run in one line."""
-    own = rock_mass(
-        waves=[wave()],
-        numerics={"dem": {"block": 1.0, "step_fraction": 3.0, "allow_unstable": True}},
-        time={"duration": 0.2},
-        record={"interval": 1e-3},
-    )
-    with pytest.raises(StoppedError, match=r"fastest at \[") as caught:
-        simulate(own)
-    assert "\n" not in str(caught.value)

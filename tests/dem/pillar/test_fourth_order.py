@@ -14,8 +14,6 @@ SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8}]
 DOWN = {"direction": [0, 1, 0]}
 RECORD = {"stress": [0.0, 20.0], "velocity": [0.25, 20.25], "interval": 1e-3}
 CHAINS = {
-    "free": {},
-    "soft layer": {"soft_layers": SOFT},
     "fixed ends, no load": {
         "ends": {"start": "fixed", "end": "fixed"},
         "load": {**RICKER, "amplitude": 0.0},
@@ -56,26 +54,15 @@ QUANTITIES = ("stress", "velocity", "displacement")
 
 @pytest.mark.parametrize("changes", CHAINS.values(), ids=CHAINS)
 def test_fourth_order_against_the_time_exact_chain(fourth, changes):
-    """Stress, velocity and displacement; jumps and kinks at whole steps cost no order."""
+    """Stress, velocity and displacement, and the energy ledger; jumps and kinks at whole steps cost
+    no order."""
     steps, errors, exact = [], [], row_of_blocks.solve(fourth(0.3, **changes))
     for fraction in (0.3, 0.15, 0.075):
         result = dem.simulate(fourth(fraction, **changes))
         steps.append(result.attrs["dt"])
         largest = [abs(result[x] - exact[x]).max() / abs(exact[x]).max() for x in QUANTITIES]
-        errors.append([misfit(result, exact), *map(float, largest)])
+        errors.append([misfit(result, exact), energy_residual(result), *map(float, largest)])
     assert orders(steps, np.array(errors).T) == pytest.approx(4.0, abs=0.1)
-
-
-def test_beats_leapfrog_at_equal_work(fourth):
-    """Three more digits than leapfrog where that is 0.3 % off, at as many forces."""
-    scene = fourth(0.3)
-    exact, found = row_of_blocks.solve(scene), dem.simulate(scene)
-    fraction = found.attrs["dt"] / found.attrs["critical_dt"] * LIMIT / 8 * (1 + 1e-9)
-    leapfrog = dem.simulate(
-        fourth(0.3, numerics__dem={"scheme": "leapfrog", "step_fraction": fraction})
-    )
-    assert leapfrog.attrs["force_evaluations"] == found.attrs["force_evaluations"]
-    assert misfit(found, exact) < 1e-3 * misfit(leapfrog, exact)
 
 
 def test_energy_has_no_trend_in_a_hundred_thousand_steps(fourth):
@@ -91,31 +78,19 @@ def test_energy_has_no_trend_in_a_hundred_thousand_steps(fourth):
     assert abs(trend) < 0.05 * np.ptp(swing)
 
 
-def test_ledger_closes_to_fourth_order(fourth):
-    """Kinetic, elastic, the fixed end, weight and prestress against the load's work."""
-    changes = CHAINS["against the axis, under its weight and a prestress"]
-    results = [dem.simulate(fourth(fraction, **changes)) for fraction in (0.3, 0.15, 0.075)]
-    found = orders([x.attrs["dt"] for x in results], [energy_residual(x) for x in results])
-    assert found == pytest.approx(4.0, abs=0.1)
-
-
 def test_no_tension_converges_at_second_order(fourth):
     """The force has a kink where a joint opens or closes: order two, if not at every halving."""
-    errors, steps, scenes = [], [], []
+    changes = {
+        "joints__tension": False,
+        "ends__end": "fixed",
+        "prestress": {"normal": 3e5},
+        "time__duration": 0.05,
+        "record": {"stress": [20.0], "interval": 1e-3},
+    }
+    exact = row_of_blocks.solve(fourth(0.1, **changes))  # no step changes it
+    errors, steps = [], []
     for fraction in (0.1, 0.0125):
-        scenes.append(
-            fourth(
-                fraction,
-                joints__tension=False,
-                ends__end="fixed",
-                prestress={"normal": 3e5},
-                time__duration=0.05,
-                record={"stress": [20.0], "interval": 1e-3},
-            )
-        )
-    exact = row_of_blocks.solve(scenes[0])  # no step changes it
-    for scene in scenes:
-        result = dem.simulate(scene)
+        result = dem.simulate(fourth(fraction, **changes))
         assert float(result.stress.min()) >= 0.0
         steps.append(result.attrs["dt"])
         errors.append(misfit(result, exact))
@@ -129,9 +104,8 @@ def test_result_says_how_it_was_stepped(fourth, pillar):
     assert result.attrs["scheme"] == "fourth-order"
     assert result.attrs["force_evaluations"] == 4 * result.attrs["steps"]
     assert leapfrog.attrs["force_evaluations"] == leapfrog.attrs["steps"]
-    assert result.attrs["critical_dt"] / leapfrog.attrs["critical_dt"] == pytest.approx(
-        LIMIT / 2, rel=1e-12
-    )
+    more = result.attrs["critical_dt"] / leapfrog.attrs["critical_dt"]
+    assert more == pytest.approx(LIMIT / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,68 @@
+"""Finite rotations: small ones are the limit, and are refused beyond it; blocks topple."""
+
+import numpy as np
+import pytest
+
+from jointwave import dem
+from jointwave.cases.errors import SceneError
+
+BLOW = {
+    "pillar__length": 5.0,
+    "load__direction": [0.6, 0.8, 0.0],
+    "load__at": [0.1, 0.05],
+    "record__stress": [1.0, 2.5],
+    "record__velocity": [0.3, 2.0],
+    "time__duration": 0.02,
+    "motion__rotation": "finite",
+}
+
+
+def test_small_rotations_are_the_limit(pillar):
+    """What small rotations neglect is quadratic in the amplitude: its share is linear in it."""
+
+    def share(amplitude):
+        changes = {**BLOW, "load__amplitude": amplitude, "joints__damping_ratio": 0.02}
+        finite = dem.simulate(pillar(**changes))
+        small = dem.simulate(pillar(**{**changes, "motion__rotation": "small"}))
+        found = []
+        for name in ("stress", "shear", "velocity", "displacement", "rotation"):
+            a, b = finite[name].values, small[name].values
+            found.append(np.abs(a - b).max() / np.abs(b).max())
+        return np.array(found)
+
+    weak, strong = share(1e3), share(1e5)
+    assert (weak < 1e-4).all()
+    np.testing.assert_allclose(strong / weak, 100, rtol=0.05)
+
+
+def incline(pillar, slope):
+    """Return the largest rotation of a loose block on a rough slope after one second."""
+    angle = np.arctan(slope)
+    scene = pillar(
+        pillar__length=1.0,
+        pillar__block=0.5,
+        joints={"tension": False, "friction_angle": 60.0, "damping_ratio": 0.3},
+        load={"shape": "step", "amplitude": 0.0},
+        gravity={"direction": [np.sin(angle), np.cos(angle), 0.0], "static": False},
+        ends__end="fixed",
+        motion__rotation="finite",
+        time__duration=1.0,
+        record={"velocity": [0.25], "interval": 0.01},
+        numerics__dem__step_fraction=0.3,
+    )
+    return np.abs(dem.simulate(scene).rotation.values).max()
+
+
+def test_a_block_topples_where_its_weight_leaves_its_base(pillar):
+    """The edge of a cube's base is d/2 from the centre, its centroid d/2 above, so it topples
+    beyond tan(slope) = 1 and not before."""
+    assert incline(pillar, 0.96) < 1e-3
+    assert incline(pillar, 1.04) > 0.3
+
+
+def test_a_row_of_small_rotations_that_turns_too_far_is_refused(row):
+    """The line names the key, the block, its angle and the remedy."""
+    twist = {"shape": "step", "direction": [0, 1, 0], "arm": 0.1, "amplitude": 1e6}
+    remedy = r"motion\.rotation .* turned .* motion.rotation = 'finite'"
+    with pytest.raises(SceneError, match=remedy):
+        dem.simulate(row(load=twist))
