@@ -28,7 +28,7 @@ def mass(one_joint):
 def rock_with():
     """A function of joint sets and other tables: 12 m by 10 m of rock with lambda = mu = 20 GPa."""
 
-    def scene(*sets, poisson=0.25, **tables):
+    def scene(*sets, poisson=0.25, folder=Path(), **tables):
         own = {
             "title": "rock",
             "domain": {"size": [12.0, 10.0]},
@@ -39,7 +39,7 @@ def rock_with():
         own |= tables
         size = own["domain"].get("size", [0.0, 0.0])
         own.setdefault("record", {"points": [[0.1, 0.2, 0.3][: len(size)]]})
-        return validated(own, Path("scene.toml"), frozenset())
+        return validated(own, folder / "scene.toml", frozenset())
 
     return scene
 

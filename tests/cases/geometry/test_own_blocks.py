@@ -19,7 +19,6 @@ from jointwave.cases.gmsh_file import MeshError
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import SIDES as SIDES_OF_BOX
 from jointwave.cases.partition.shape import shape_of
-from jointwave.cases.read import load
 
 TOLERANCE = 1e-9  # m
 
@@ -365,38 +364,34 @@ def bricks():
     return blocks_of(body, TOLERANCE)
 
 
-SCENE = """
-title = "a wall"
-domain = { blocks = "wall.KIND" }
-rock = { density = 2600.0, intact_modulus = 5e10 }
-gravity = {}
-boundaries = { bottom = "fixed" }
-time = { duration = 6e-3 }
-record = { points = [[2.3, 0.5, 1.75]] }
+BED, HEAD = {"dip": 0.0}, {"dip": 90.0, "dip_direction": 90.0}
+ON_STEP = [[0.5, 0.5, 0.9], [1.5, 0.5, 0.4]]
 
-[[joint_sets]]
-name = "bed"
-dip = 0.0
-normal_stiffness = 2e10
-shear_stiffness = 8e9
 
-[[joint_sets]]
-name = "head"
-dip = 90.0
-dip_direction = 90.0
-normal_stiffness = 3e10
-shear_stiffness = 8e9
-"""
+@pytest.fixture
+def scene_of(rock_with):
+    """A function of a file and receivers: blocks between beds and heads, on a fixed bottom."""
+
+    def scene(path, points, **sides):
+        return rock_with(
+            *(BED, HEAD),
+            folder=path.parent,
+            domain={"blocks": path.name},
+            gravity={},
+            boundaries={"bottom": "fixed"} | sides,
+            record={"points": points},
+        )
+
+    return scene
 
 
 @pytest.mark.parametrize("kind", WRITERS)
-def test_a_scene_of_polyhedra_is_one_in_space(kind, tmp_path):
+def test_a_scene_of_polyhedra_is_one_in_space(kind, tmp_path, scene_of):
     """Its sides are the faces on the box around it; here it begins at no origin."""
     expected, away = bricks(), np.array([0.5, 0.25, -0.125])
     solids = [[face + away for face in faces] for faces in polygons(expected)]
     WRITERS[kind](tmp_path / f"wall.{kind}", solids)
-    (tmp_path / "wall.toml").write_text(SCENE.replace("KIND", kind))
-    (scene,) = load(tmp_path / "wall.toml")
+    scene = scene_of(tmp_path / f"wall.{kind}", [[2.3, 0.5, 1.75]])
     assert scene.in_space and scene.gravity.direction == [0.0, 0.0, -1.0]
     assert np.ptp(scene.domain.corners, axis=0) == pytest.approx([4.0, 1.0, 2.0])
     found = blocks_of_scene(scene)
@@ -408,41 +403,34 @@ def test_a_scene_of_polyhedra_is_one_in_space(kind, tmp_path):
     assert len(found.faces(TOLERANCE)[0]) == found.count * 6  # a face is one
 
 
-STEP = cube((0, 0, 0)), cube((1, 0, 0), (1, 1, 0.5))
-ON_STEP = SCENE.replace("KIND", "obj").replace(
-    "[2.3, 0.5, 1.75]", "[0.5, 0.5, 0.9], [1.5, 0.5, 0.4]"
-)
+STEP = obj(cube((0, 0, 0)), cube((1, 0, 0), (1, 1, 0.5)))
 
 
-def scene_of(folder, blocks, *change):
-    (folder / "wall.obj").write_text(blocks)
-    (folder / "wall.toml").write_text(ON_STEP.replace(*change))
-    return load(folder / "wall.toml")[0]
-
-
-def test_what_lies_on_no_side_of_the_box_is_the_outline(tmp_path):
+def test_what_lies_on_no_side_of_the_box_is_the_outline(tmp_path, scene_of):
     """A step: its lower top is no side of the box."""
-    scene = scene_of(tmp_path, obj(*STEP), "bottom =", 'outline = "quiet", bottom =')
+    (tmp_path / "wall.obj").write_text(STEP)
+    scene = scene_of(tmp_path / "wall.obj", ON_STEP, outline="quiet")
     outer = blocks_of_scene(scene).boundary
-    area = dict(zip(SIDES_OF_BOX[3], np.bincount(outer.side, outer.area), strict=True))
-    assert area == pytest.approx(
-        {"left": 1, "right": 0.5, "front": 1.5, "back": 1.5, "bottom": 2, "top": 1, "outline": 1.5}
-    )
+    area = np.bincount(outer.side, outer.area, minlength=len(SIDES_OF_BOX[3]))
+    assert area == pytest.approx([1, 0.5, 1.5, 1.5, 2, 1, 1.5])
     normals = shape_of(scene.domain).normals()["outline"]
     assert sorted(normals.tolist()) == [[0, 0, 1], [1, 0, 0]]
 
 
 @pytest.mark.parametrize(
-    "blocks, change, words",
+    "blocks, points, sides, words",
     [
-        (obj(*STEP), ("0.5, 0.5, 0.9", "1.5, 0.5, 0.9"), "points[0] = [1.5, 0.5, 0.9]: must lie"),
-        (obj(*STEP), ("0.5, 0.5, 0.9", "0.5, 0.5"), "must have 3 numbers: the domain is in space"),
-        (obj((CUBE, SIDES)), ("bottom =", 'outline = "fixed", bottom ='), "is not a side of this"),
-        (obj(square(0, 0)), ("", ""), "must have 2 numbers: the domain is in the plane"),
+        (STEP, [[1.5, 0.5, 0.9]], {}, "record.points[0] = [1.5, 0.5, 0.9]: must lie"),
+        (STEP, [[0.5, 0.5]], {}, "must have 3 numbers: the domain is in space"),
+        (obj((CUBE, SIDES)), ON_STEP[:1], {"outline": "fixed"}, "is not a side of this"),
+        (obj(square(0, 0)), ON_STEP[:1], {}, "must have 2 numbers: the domain is in the plane"),
     ],
 )
-def test_scenes_of_polyhedra_that_do_not_fit_are_refused(blocks, change, words, tmp_path):
+def test_scenes_of_blocks_that_do_not_fit_are_refused(
+    blocks, points, sides, words, tmp_path, scene_of
+):
+    (tmp_path / "wall.obj").write_text(blocks)
     with pytest.raises(SceneError) as error:
-        scene_of(tmp_path, blocks, *change)
+        scene_of(tmp_path / "wall.obj", points, **sides)
     said = [str(one) for one in error.value.each]
     assert any(words in line for line in said) and "\n" not in "".join(said)
