@@ -5,13 +5,13 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from jointwave import dem
-from jointwave.compare.exact.blocks import row_of_blocks
+from jointwave.cases.errors import StoppedError
+from jointwave.compare.engines import solve
+from jointwave.compare.runs import jobs, run
 from jointwave.compare.runs.output import write, write_csv, write_dataset, write_text
 
 
 def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):
-    """The old content stays, and no temporary file is left behind."""
     path = write_text(tmp_path / "table.csv", "old")
 
     def half(temporary):
@@ -36,18 +36,31 @@ def test_a_table_of_numbers_is_written_as_one_with_text(tmp_path, rows):
     assert mixed[1:] == [f"{line},x" for line in lines[1:]]
 
 
-def test_dataset_comes_back_as_it_was(pillar, tmp_path):
-    """Values, units, coordinates and attributes survive NetCDF."""
-    result = dem.simulate(pillar(record__velocity=[19.75], time__duration=0.01))
-    back = xr.load_dataset(write_dataset(tmp_path / "deep" / "dem.nc", result))
+@pytest.mark.parametrize(
+    "name, changes",
+    [
+        ("dem", {}),
+        ("spatial-lattice", {"load__direction": [1.0, 0.0, 0.0], "record__stress": []}),
+    ],
+)
+def test_dataset_comes_back_as_it_was(name, changes, pillar, tmp_path):
+    """Values, units, coordinates and attributes, with places where nothing is recorded."""
+    result = solve(name, pillar(record__velocity=[19.75], time__duration=0.01, **changes))
+    back = xr.load_dataset(write_dataset(tmp_path / "deep" / "result.nc", result))
     xr.testing.assert_identical(back, result)
-    assert back.stress.attrs["units"] == "Pa" and back.attrs["critical_dt"] > back.attrs["dt"]
+    assert back.velocity.attrs["units"] == "m/s"
 
 
-def test_spatial_dataset_comes_back_as_it_was(pillar, tmp_path):
-    """Shear, rotation and their axes survive, with places where nothing is recorded."""
-    across = {"load__direction": [1.0, 0.0, 0.0], "time__duration": 0.01}
-    result = row_of_blocks.solve(pillar(record__stress=[], record__velocity=[19.75], **across))
-    back = xr.load_dataset(write_dataset(tmp_path / "exact.nc", result))
-    xr.testing.assert_identical(back, result)
-    assert list(back.across.values) == ["x", "z"] and back.rotation.attrs["units"] == "rad"
+def test_what_a_stopped_run_computed_is_written_beside_its_result(pillar, tmp_path, monkeypatch):
+    """Without an iteration no step converges: the first sample is all there is."""
+    scene = pillar(numerics__continuum__scheme="implicit", time__duration=2e-3)
+    result = tmp_path / "continuum-jointed.nc"
+    result.write_bytes(b"CDF\2 of an earlier run")
+    (job,), _ = jobs.plan([scene], [("continuum", "jointed")], tmp_path)
+    monkeypatch.setattr("jointwave.continuum.stepping.newton.MOST_ITERATIONS", 0)
+    with pytest.raises(StoppedError, match=r"do not converge .*; what was computed is in .*\.nc$"):
+        run.execute([job], lambda fraction: None)
+    assert result.read_bytes() == b"CDF\2 of an earlier run"
+    with xr.open_dataset(tmp_path / "continuum-jointed.stopped.nc") as kept:
+        assert kept.sizes["time"] == 1 and kept.attrs["scheme"] == "implicit"
+        assert kept["stress"].sizes["stress_y"] == 1

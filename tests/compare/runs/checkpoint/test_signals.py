@@ -21,18 +21,6 @@ def members(group):
     return [args for gid, state, args in found if gid == str(group) and state[0] != "Z"]
 
 
-@pytest.fixture
-def stepping(start, until, arguments):
-    """Return a function that starts a run of blocks, and gives it when it is stepping."""
-
-    def started(out, *more):
-        process = start(*arguments("axial", out, *EVERY, *more))
-        assert until(process, lambda: list(out.glob(".*.checkpoint-*-0.npz")))
-        return process
-
-    return started
-
-
 @pytest.mark.parametrize(
     ("number", "code", "word"),
     [
@@ -41,16 +29,12 @@ def stepping(start, until, arguments):
     ],
 )
 def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
-    number, code, word, tmp_path, stepping, said, finish, arguments, whole, refuse_difference
+    number, code, word, tmp_path, stopped, said, arguments, whole, refuse_difference
 ):
-    """One line; the waveforms until then are those of the whole run; --resume ends with the rest.
-
-    Then nothing but the result is left.
-    """
+    """One line; the waveforms until then are those of the whole run; --resume ends with the rest,
+    and nothing but the result is left."""
     out, undisturbed = tmp_path / "out", whole("axial")
-    process = stepping(out)
-    process.send_signal(number)
-    ended, (line,) = finish(process)
+    ended, (line,) = stopped(arguments("axial", out, *EVERY), out, number)
     assert ended == code and f"{word} at t = 0." in line and "--resume" in line
     assert str(out / "dem.stopped.nc") in line and not (out / "dem.nc").exists()
     with (
@@ -98,7 +82,7 @@ def test_results_that_are_whole_are_not_made_again(tmp_path, jointwave, argument
 
 
 def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
-    tmp_path, start, said, until, arguments, paper_folder
+    tmp_path, stopped, said, arguments, paper_folder
 ):
     """Of several runs those that ended stay; the one that was killed goes on."""
     text = (paper_folder / "fig-03.toml").read_text(encoding="utf-8")
@@ -106,11 +90,8 @@ def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
     two.write_text(f"{first}[[variants]]{second}", encoding="utf-8")
     _, _, _, _, *options = arguments("axial", tmp_path, *EVERY)  # but for the scene and its variant
     every = ("run", two, *options)
-    process = start(*every)
     first, folder = tmp_path / "dem.nc", tmp_path / "zeta 0.02"
-    assert until(process, lambda: list(folder.glob(".*.checkpoint-*-0.npz")))
-    process.kill()
-    process.communicate()
+    assert stopped(every, folder, signal.SIGKILL) == (-signal.SIGKILL, [])
     before = first.stat().st_mtime_ns
     (line,) = said(*every, "--resume")
     assert f"{folder / 'dem.nc'} continues" in line
