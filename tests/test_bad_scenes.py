@@ -121,6 +121,7 @@ MISTAKES = {
         ),
         "load.quantity = 'velocity'; load.at = [0.1, 0.0]": "for load.quantity 'velocity'",
         # all joints alike
+        "soft_layers[0].contact_points = 3": "applies to all joints",
         "joints.contact_points = 3": "needs point_rule = 'midpoint' or 'gauss'",
         # gravity
         "gravity.direction = [0, -1, 0] -> gravity.static = true": "needs a fixed end ... or",
