@@ -1,14 +1,10 @@
 """Commands read what an earlier one has computed, and nothing else."""
 
 import json
-import os
 import re
-import subprocess
-import sys
 
 import pytest
 
-from jointwave.compare.runs import reuse
 from jointwave.compare.runs.checkpoint import signature
 
 SCENE = "guo-li-2002/fig-03"
@@ -20,48 +16,49 @@ BOTH = ("--engine", "dem", "--engine", "continuum", "--model", "jointed")
 @pytest.fixture
 def lines(jointwave, monkeypatch, tmp_path, without_warnings):
     """Return a function that runs a command on a short scene, and gives what it says of results;
-    they are in `results` of the test's folder."""
+    they are in `results` of the test's folder. Its `facts` are those of --json."""
     monkeypatch.setenv("JOINTWAVE_PROGRESS", "1000")
     folder = tmp_path / "results"
 
-    def run(command, *options):
+    def call(command, *options):
         where = ("--out" if command == "run" else "--results", folder)
-        said = jointwave(command, SCENE, *SHORT, *AT, *where, *options).err
-        told = [line for line in without_warnings(said) if "compiling" not in line]
+        return jointwave(command, SCENE, *SHORT, *AT, *where, *options)
+
+    def run(command, *options):
+        said = without_warnings(call(command, *options).err)
+        told = [line for line in said if "compiling" not in line]
         return [line.replace(f"{folder}/", "") for line in told]
 
-    run.folder = folder
+    run.folder, run.facts = folder, lambda *asked: json.loads(call(*asked, "--json").out)
     return run
 
 
 def stamps(folder):
-    """Return when each result was written."""
     return {path.name: path.stat().st_mtime_ns for path in folder.glob("*.nc")}
 
 
-def test_second_command_solves_nothing(lines, capsys, jointwave):
-    """Of `run`, `compare` and `figure`; what they answer is the same."""
+def test_second_command_solves_nothing(lines):
+    """Of `run`, `compare` and `figure`; what they answer is the same, misfit by misfit. What would
+    be read is foretold; --fresh computes anew."""
     assert lines("run", *BOTH) == []
     before = stamps(lines.folder)
     assert set(before) == {"dem.nc", "continuum-jointed.nc"}
     first, second = lines("run", *BOTH)
     assert first.startswith("jointwave: reads dem.nc, computed on 20")
     assert first.endswith(" s; --fresh computes anew") and "reads continuum-jointed.nc" in second
+    foretold = lines.facts("compare", "--dry-run")
+    assert foretold["read"] == 2
+    assert not {"dem", "continuum-jointed"} & {run["engine"] for run in foretold["runs"]}
     (line,) = lines("compare", "--all")
     assert "reads dem.nc, continuum-jointed.nc, computed on" in line
     full = stamps(lines.folder)
     assert full.items() >= before.items() and "exact-jointed-bar.nc" in full
     figure = ("--engine", "dem", "--out", lines.folder / "a.svg")
     assert "reads dem.nc, computed" in lines("figure", *figure)[0]
-    ask = ("compare", SCENE, *SHORT, *AT, "--json", "--results")
-    assert jointwave(*ask, lines.folder).out == jointwave(*ask, lines.folder).out
     assert stamps(lines.folder) == full
-
-
-def test_what_is_read_is_what_was_computed(lines, jointwave):
-    """Every misfit is the same number, and of the same types: JSON has no others."""
-    ask = ("compare", SCENE, *SHORT, *AT, "--json", "--read", "--results", lines.folder)
-    assert json.loads(jointwave(*ask).out) == json.loads(jointwave(*ask).out)
+    computed = lines.facts("compare", "--fresh")
+    assert lines.facts("compare") == computed
+    assert min(stamps(lines.folder)[name] - full[name] for name in before) > 0
 
 
 @pytest.mark.parametrize(
@@ -86,40 +83,30 @@ def test_what_decides_numbers_decides_whether_a_result_is_read(change, why, line
 
 
 def test_another_program_computes_anew(lines, monkeypatch):
+    """Said once of two results, by two engines."""
     lines("run", *BOTH)
-    monkeypatch.setattr(signature, "program", lambda: "other")
-    (line,) = lines("run", *BOTH)  # of two results, by two engines
-    assert line.startswith("jointwave: computes dem.nc anew: it is from another program; others")
-    monkeypatch.setattr(signature, "program", lambda: "a third")
-    (line,) = lines("compare")
-    assert "computes dem.nc anew: it is from another program" in line
+    for command, program in ((("run", *BOTH), "other"), (("compare",), "a third")):
+        monkeypatch.setattr(signature, "program", lambda program=program: program)
+        (line,) = lines(*command)
+        why = "it is from another program; others"
+        assert line.startswith(f"jointwave: computes dem.nc anew: {why}")
 
 
-@pytest.mark.parametrize("damage", ["a bit", "its end", "its signature"])
-def test_damaged_result_is_computed_anew(damage, lines):
-    """Wherever it is damaged, in the middle of the samples too: NetCDF has no checksum."""
+@pytest.mark.parametrize(
+    "damage, why",
+    [
+        (lambda whole: whole[:-4000] + bytes([whole[-4000] ^ 1]) + whole[-3999:], "is damaged"),
+        (lambda whole: whole[:-4000], "is damaged"),
+        (lambda whole: whole.replace(b"signature", b"signaturf"), "does not say what computed it"),
+    ],
+)
+def test_damaged_result_is_computed_anew(damage, why, lines):
+    """A bit in the middle of the samples too: NetCDF has no checksum."""
     lines("run")
     path = lines.folder / "dem.nc"
-    whole = path.read_bytes()
-    broken = {
-        "a bit": whole[:-4000] + bytes([whole[-4000] ^ 1]) + whole[-3999:],
-        "its end": whole[:-4000],
-        "its signature": whole.replace(b"signature", b"signaturf"),
-    }
-    path.write_bytes(broken[damage])
-    why = "does not say what computed it" if damage == "its signature" else "is damaged"
+    path.write_bytes(damage(path.read_bytes()))
     assert lines("compare")[0].startswith(f"jointwave: computes dem.nc anew: it {why}; others")
     assert "reads dem.nc" in lines("run")[0]
-
-
-def test_fresh_computes_anew(lines):
-    lines("run")
-    before = stamps(lines.folder)
-    for command in ("run", "compare"):
-        assert lines(command, "--fresh") == []
-        after = stamps(lines.folder)
-        assert after["dem.nc"] > before["dem.nc"]
-        before = after
 
 
 def test_film_and_view_share_their_snapshots(lines):
@@ -137,13 +124,8 @@ def test_film_and_view_share_their_snapshots(lines):
 def test_folder_that_cannot_be_written_costs_the_reuse_alone(lines, jointwave):
     lines.folder.write_text("a file")
     assert lines("compare") == [f"jointwave: results are not stored: {lines.folder}: File exists"]
-
-
-def test_fresh_is_not_resumed(jointwave):
     said = jointwave("run", SCENE, "--fresh", "--resume", code=2).err
-    assert (
-        said == "jointwave: --fresh: computes anew what --resume would continue: give one of them\n"
-    )
+    assert said.endswith("what --resume would continue: give one of them\n")
 
 
 @pytest.mark.parametrize("command", ["run", "compare"])
@@ -160,47 +142,21 @@ def test_a_sweep_is_computed_anew_on_request_alone(command, jointwave, tmp_path)
     assert all(new > old for new, old in zip(fresh, first, strict=True))
 
 
-def test_a_report_says_what_it_reads(jointwave, monkeypatch, tmp_path, in_toml):
+OWN = """
+title = "a short pillar of rigid blocks"
+pillar = { length = 5.0, side = 0.5, block = 0.5 }
+rock = { density = 2400.0, p_speed = 2200.0, s_speed = 800.0 }
+load = { shape = "ricker", amplitude = 1e6, period = 0.01 }
+time = { duration = 0.03 }
+record = { stress = [2.0] }
+"""
+
+
+def test_a_report_says_what_it_reads(jointwave, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("JOINTWAVE_PROGRESS", "1000")
-    tables = {
-        "title": "a short pillar of rigid blocks",
-        "pillar": {"length": 5.0, "side": 0.5, "block": 0.5},
-        "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
-        "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01},
-        "time": {"duration": 0.03},
-        "record": {"stress": [2.0]},
-    }
-    (tmp_path / "own.toml").write_text(in_toml(tables))
+    (tmp_path / "own.toml").write_text(OWN)
     assert "jointwave: reads" not in jointwave("report", "own.toml").err
     said = jointwave("report", "own.toml").err
     (line,) = [line for line in said.splitlines() if line.startswith("jointwave: reads")]
     assert re.fullmatch(r"jointwave: reads \d+ results of own, computed in .* s; --fresh .*", line)
-
-
-def test_what_would_be_read_is_foretold(lines, jointwave):
-    lines("run", *BOTH)
-    ask = ("compare", SCENE, *SHORT, *AT, "--dry-run", "--json", "--results", lines.folder)
-    facts = json.loads(jointwave(*ask).out)
-    assert facts["read"] == 2
-    assert not {"dem", "continuum-jointed"} & {run["engine"] for run in facts["runs"]}
-
-
-def test_other_process_reads_the_default_folder(tmp_path):
-    """As its user calls it: `run`, then `compare`, in one folder."""
-    options = {**os.environ, "JOINTWAVE_PROGRESS": "1000"}
-    said = []
-    for command in (("run", "--engine", "dem"), ("compare",)):
-        name, *more = command
-        call = [sys.executable, "-m", "jointwave", name, SCENE, *SHORT, *AT, *more]
-        done = subprocess.run(call, cwd=tmp_path, env=options, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        said.append(done.stderr)
-    assert "reads" not in said[0]
-    assert "jointwave: reads out/fig-03/dem.nc, computed on" in said[1]
-
-
-def test_checksum_is_that_of_the_file(lines):
-    lines("run")
-    with reuse.xr.open_dataset(lines.folder / "dem.nc") as found:
-        assert len(found.attrs[reuse.CHECKSUM]) == 64 and float(found.attrs[reuse.SECONDS]) > 0
