@@ -10,6 +10,7 @@ import pytest
 
 from jointwave import load, misfit, simulate
 from jointwave.cases.material.calibrate import calibrate
+from tests.field_cases.scenes import ENGINES, mass
 
 L, RHO, E, G = 10.0, 2400.0, 8.64e10, 8.64e10 / 2.5
 PILLAR = {
@@ -22,24 +23,6 @@ PILLAR = {
     "record": {"stress": [5.0, L], "velocity": [0.5]},
     "numerics": {"dem": {"step_fraction": 0.1}},
 }
-ROCK = {
-    "title": "rock on a wall",
-    "domain": {"size": [1.0, L]},
-    "rock": {"density": RHO, "intact_modulus": E, "intact_poisson": 0.0},
-    "joint_sets": [
-        {
-            "name": "bed", "dip": 0.0, "spacing": 0.5, "through": [0.0, 0.5],
-            "normal_stiffness": 9e9, "shear_stiffness": 4e9,
-        }
-    ],
-    "boundaries": {"bottom": "fixed"},
-    "loads": [
-        {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e5, "period": 0.05}
-    ],
-    "time": {"duration": 0.15},
-    "record": {"points": [[0.5, 9.75]], "joints": [[0.5, 5.0]]},
-    "numerics": {"continuum": {"size": 0.5}},
-}  # fmt: skip
 
 
 def run(solver, **changes):
@@ -57,7 +40,7 @@ def test_blocks_on_a_wall_tend_to_the_jointed_bar():
     assert misfit(blocks, run("lattice")) < 1e-4
 
 
-@pytest.mark.parametrize("solver", ["dem", "continuum-jointed"])
+@pytest.mark.parametrize("solver", ENGINES)
 @pytest.mark.parametrize("across", [False, True])
 def test_static_deflection_on_a_wall(solver, across):
     """Weight rho g y over the rock, and the joints between: none at the wall. Along the axis, and
@@ -81,8 +64,19 @@ def test_static_deflection_on_a_wall(solver, across):
 
 def test_walls_of_rock_masses_follow_the_same_rule():
     """Blocks and elements: 20 beds, one of them cut off at the wall without a joint."""
-    scene = load(ROCK)
-    assert misfit(simulate(scene, "dem"), simulate(scene, "continuum-jointed")) < 0.01
+    bed = {"name": "bed", "dip": 0.0, "spacing": 0.5, "through": [0.0, 0.5]}
+    push = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e5, "period": 0.05}
+    tables = mass(
+        *(1.0, L),
+        rock={"density": RHO, "intact_modulus": E, "intact_poisson": 0.0},
+        joint_sets=[bed | {"normal_stiffness": 9e9, "shear_stiffness": 4e9}],
+        boundaries={"bottom": "fixed"},
+        loads=[push],
+        time={"duration": 0.15},
+        record={"points": [[0.5, 9.75]], "joints": [[0.5, 5.0]]},
+        numerics={"continuum": {"size": 0.5}},
+    )
+    assert misfit(*(simulate(load(tables), engine) for engine in ENGINES)) < 0.01
 
 
 def test_rock_that_is_all_but_rigid_does_not_decide_the_step():

@@ -13,6 +13,7 @@ import pytest
 
 from jointwave import load, simulate
 from jointwave.cases.errors import SceneError
+from tests.field_cases.scenes import ENGINES, SIDES, mass
 
 RHO, G, H = 2500.0, 9.81, 20.0
 WEIGHT = RHO * G * H
@@ -32,31 +33,25 @@ PILLAR = {
     "numerics": {"dem": {"static_tolerance": 1e-12}},
 }  # fmt: skip
 
-ROCK = {
-    "title": "rock on a quiet base between quiet sides",
-    "domain": {"size": [3.0, H]},
-    "rock": {"density": RHO, "intact_modulus": 4e9, "intact_poisson": 0.0},
-    "joint_sets": [
-        {
-            "name": name, "dip": dip, "spacing": 1.0,
-            "normal_stiffness": 4e9, "shear_stiffness": 2e9,
-        }
-        for name, dip in (("bed", 0.0), ("cross", 90.0))
-    ],
-    "boundaries": {"bottom": "quiet", "left": "quiet", "right": "quiet"},
-    "loads": [
-        {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e5, "period": 0.05}
-    ],
-    "gravity": {},
-    "time": {"duration": 0.12},
-    "record": {"points": [[1.5, H - 0.5], [1.5, H - 5.5], [1.5, 0.5]], "joints": [[1.5, 1.0]]},
-    "numerics": {"dem": {"static_tolerance": 1e-12}, "continuum": {"size": 1.0}},
-}  # fmt: skip
+SETS = [
+    {"name": str(dip), "dip": dip, "spacing": 1.0, "normal_stiffness": 4e9, "shear_stiffness": 2e9}
+    for dip in (0.0, 90.0)
+]
+ROCK = mass(
+    *(3.0, H),
+    rock={"density": RHO, "intact_modulus": 4e9, "intact_poisson": 0.0},
+    joint_sets=SETS,
+    boundaries=dict.fromkeys(SIDES[:3], "quiet"),
+    loads=[PILLAR["load"] | {"kind": "pressure", "side": "top"}],
+    gravity={},
+    time={"duration": 0.12},
+    record={"points": [[1.5, H - 0.5], [1.5, H - 5.5], [1.5, 0.5]], "joints": [[1.5, 1.0]]},
+    numerics={"dem": {"static_tolerance": 1e-12}, "continuum": {"size": 1.0}},
+)
 
-CASES = [(PILLAR, "dem"), (PILLAR, "continuum-jointed"), (PILLAR, "lattice")]
-CASES += [(ROCK, "dem"), (ROCK, "continuum-jointed")]
-NAMES = [f"{scene['title'].split()[1]}-{solver}" for scene, solver in CASES]
-every = pytest.mark.parametrize(("scene", "solver"), CASES, ids=NAMES)
+CASES = {f"pillar-{solver}": (PILLAR, solver) for solver in (*ENGINES, "lattice")}
+CASES |= {f"rock-{solver}": (ROCK, solver) for solver in ENGINES}
+every = pytest.mark.parametrize(("scene", "solver"), CASES.values(), ids=CASES)
 
 
 def run(scene, solver, **changes):

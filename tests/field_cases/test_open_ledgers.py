@@ -1,13 +1,17 @@
-"""Joints that carry no tension and give off their shear energy as they open: a ledger that forgets
-it is open by 1 to 13 % at any step, and one that is open says so."""
+"""Energy of joints that open: no tension, softening, fracture.
+
+Joints that carry no tension give off their shear energy as they open: a ledger that forgets it is
+open by 1 to 13 % at any step, and one that is open says so. A softening joint pulled apart takes
+its fracture energy once (exaDEM's traction test counts it twice): G_f times its area.
+"""
 
 import numpy as np
 import pytest
 
 import jointwave as jw
 from jointwave.results.dataset import MOST_OPEN, energy_residual, open_ledger
+from tests.field_cases.scenes import ENGINES, mass
 
-ENGINES = ("dem", "continuum-jointed")
 OPENS = {"tension": False}
 SOFTENS = {"tensile_strength": 1e4, "fracture_energy": 0.05}
 
@@ -17,20 +21,19 @@ def rock(law, rng, fraction):
     dip, spacing = rng.uniform(20.0, 60.0), rng.uniform(3.0, 4.0)
     stiff = {"normal_stiffness": 4.12e9, "shear_stiffness": 2.5e9}
     force = {"kind": "force", "quantity": "force", "at": [2.7, 8.0], "direction": [0.6, 0.8]}
-    return {
-        "title": "a sheared joint opens",
-        "domain": {"size": [9.0, 16.0]},
-        "rock": {"density": 2419.0, "intact_modulus": 8.77e9, "intact_poisson": 0.03},
-        "joint_sets": [{"name": "joint", "dip": dip, "spacing": spacing} | stiff | law],
-        "boundaries": {"left": "quiet", "top": "quiet", "right": "fixed", "bottom": "fixed"},
-        "loads": [force | {"amplitude": 8e5, "shape": "ricker", "period": 6e-3}],
-        "time": {"duration": 0.012},
-        "record": {"points": [[3.0, 3.0]]},
-        "numerics": {
+    return mass(
+        *(9.0, 16.0),
+        rock={"density": 2419.0, "intact_modulus": 8.77e9, "intact_poisson": 0.03},
+        joint_sets=[{"name": "joint", "dip": dip, "spacing": spacing} | stiff | law],
+        boundaries={"left": "quiet", "top": "quiet", "right": "fixed", "bottom": "fixed"},
+        loads=[force | {"amplitude": 8e5, "shape": "ricker", "period": 6e-3}],
+        time={"duration": 0.012},
+        record={"points": [[3.0, 3.0]]},
+        numerics={
             "dem": {"block": 2.0, "step_fraction": fraction},
             "continuum": {"scheme": "explicit", "step_fraction": fraction, "size": 4.0},
         },
-    }
+    )
 
 
 @pytest.mark.parametrize("law", (OPENS, SOFTENS), ids=("no tension", "softening"))
@@ -71,3 +74,19 @@ def test_a_run_warns_of_an_open_ledger(jointwave, in_toml, tmp_path):
     run = ["run", file, "--engine", "continuum", "--model", "jointed", "--out", tmp_path]
     for command in (run, ["compare", file]):
         assert "energy ledger is open by" in jointwave(*command).err
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_joint_pulled_apart_takes_its_fracture_energy_once(engine):
+    """Whatever the faces do on the way: softening gives nothing back."""
+    pulled = {
+        "title": "one joint pulled apart",
+        "pillar": {"length": 2.0, "side": 0.5, "block": 1.0},
+        "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10},
+        "joints": {"tensile_strength": 2e5, "fracture_energy": 50.0},
+        "load": {"shape": "half-sine", "amplitude": -2e6, "period": 0.02},
+        "time": {"duration": 0.03},
+        "record": {"velocity": [0.5]},
+    }
+    spent = jw.simulate(jw.load(pulled), engine).energy.sel(term="fracture")
+    assert float(spent[-1]) == pytest.approx(50.0 * 0.5**2, rel=1e-12)

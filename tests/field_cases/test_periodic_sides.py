@@ -1,7 +1,8 @@
 """Columns and jointed rock between periodic sides: what passes one side comes in at the other.
 
-The two-layer column is that of SPECFEM3D's issues 1772 and 1773: 128 m of rock with a shear speed
-of 224 m/s over 448 m/s, of equal density, struck from a quiet base below 256 m of the lower rock.
+The two-layer column is that of SPECFEM3D's issues 1772 and 1773 and SPECFEM2D's 1240: 128 m of rock
+with a shear speed of 224 m/s over 448 m/s, of equal density, struck from a quiet base below 256 m
+of the lower rock.
 """
 
 import numpy as np
@@ -11,12 +12,10 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.loads import history_of
 from jointwave.cases.read import load_tables
 from jointwave.compare.engines import solve
+from tests.field_cases.scenes import ENGINES, JOINT, P_SPEED, SIDES, mass, wave
 
-ENGINES = ("dem", "continuum-jointed")
 PERIODIC = {"left": "periodic", "right": "periodic"}
 PULSE = {"shape": "ricker", "quantity": "velocity", "amplitude": 0.1}
-JOINT = {"name": "joint", "normal_stiffness": 2e10, "shear_stiffness": 1e10}
-GRANITE = {"density": 2600.0, "intact_modulus": 5e10}
 
 
 def rock(s_speed, density=2000.0):
@@ -24,18 +23,11 @@ def rock(s_speed, density=2000.0):
     return {"density": density, "intact_modulus": 2.5 * density * s_speed**2}
 
 
-def column(height, moved=(1.0, 0.0), **tables):
+def column(height, base, moved=(1.0, 0.0), **tables):
     """Return rock between periodic sides, from a quiet base that moves to a free top."""
-    base = tables.pop("base") | {"kind": "base", "side": "bottom", "direction": list(moved)}
-    return load_tables(
-        {
-            "title": "a column",
-            "domain": {"size": [8.0, height]},
-            "boundaries": PERIODIC | {"bottom": "quiet"},
-            "loads": [base],
-            **tables,
-        }
-    )
+    base = PULSE | base | {"kind": "base", "side": "bottom", "direction": list(moved)}
+    held = PERIODIC | {"bottom": "quiet"}
+    return load_tables(mass(8.0, height, boundaries=held, loads=[base], **tables))
 
 
 def off(found, exact):
@@ -60,9 +52,9 @@ def test_a_column_without_joints_has_the_wave_of_d_alembert(component, ratio):
     height, period, block = 99.0, 0.2, 2.0
     scene = column(
         height,
+        {"period": period},
         np.eye(2)[component],
         rock=rock(5e4**0.5),
-        base=PULSE | {"period": period},
         time={"duration": 1.6},
         record={"points": [[3.0, 48.0], [5.0, 98.0]]},
         numerics={"dem": {"block": block}},
@@ -72,30 +64,33 @@ def test_a_column_without_joints_has_the_wave_of_d_alembert(component, ratio):
     most = {"dem": second_order(longest, block / (speed * period)), "continuum-jointed": 3e-3}
     for engine in ENGINES:
         found = solve(engine, scene)
-        for (_, y), wave in zip(scene.record.points, found.velocity.values, strict=True):
+        for (_, y), moved in zip(scene.record.points, found.velocity.values, strict=True):
             ways = y, 2 * height - y
             exact = sum(pulse.value(found.time.values - way / speed) for way in ways)
-            assert off(wave[:, component], exact) < most[engine], (engine, y)
-            assert np.abs(wave[:, 1 - component]).max() < 1e-12
+            assert off(moved[:, component], exact) < most[engine], (engine, y)
+            assert np.abs(moved[:, 1 - component]).max() < 1e-12
 
 
+@pytest.mark.parametrize("sides", ["periodic", "quiet"])
 @pytest.mark.parametrize("engine", ENGINES)
-def test_two_layers_multiply_the_wave_between_them(engine):
+def test_two_layers_multiply_the_wave_between_them(engine, sides):
     """Twice 4/3 of the wave that enters at the surface, and from there -1/3 of it each 1.143 s:
-    peaks of 2.667 and -0.889. Two metres below the surface, where the middle of a block is, both
-    the wave that rises and the one that falls."""
+    peaks of 2.667 and -0.889. Particles move to the left. Two metres below the surface, where the
+    middle of a block is, both the wave that rises and the one that falls."""
     upper, lower, period, depth = 224.0, 448.0, 0.8, 2.0
-    scene = column(
-        384.0,
+    tables = mass(
+        *(8.0, 384.0),
         rock=rock(lower),
         regions=[{"name": "upper", "through": [0.0, 256.0], **rock(upper)}],
-        base=PULSE | {"period": period, "amplitude": 1.0},
+        waves=[wave("S", period=period, quantity="velocity") | {"amplitude": 1.0}],
+        boundaries={"left": sides, "right": sides, "bottom": "quiet", "top": "free"},
         time={"duration": 5.0},
         record={"points": [[2.0, 384.0 - depth]]},
         numerics={"dem": {"block": 4.0}},
     )
-    found, pulse = solve(engine, scene), history_of(scene.loads[0], 1.0)
-    wave, times, first = found.velocity.values[0, :, 0], found.time.values, 256 / lower
+    scene = load_tables(tables)
+    found, pulse = solve(engine, scene), history_of(scene.waves[0], 1.0)
+    surface, times, first = -found.velocity.values[0, :, 0], found.time.values, 256 / lower
     exact = sum(
         4 / 3 * (-1 / 3) ** k * pulse.value(times - first - (128 * (1 + 2 * k) + s * depth) / upper)
         for k in range(4)
@@ -103,30 +98,26 @@ def test_two_layers_multiply_the_wave_between_them(engine):
     )
     ways = (3 * 128 / upper, 4 / (upper * period)), (first, 4 / (lower * period))
     most = sum(second_order(way / period, block) for way, block in ways)
-    assert off(wave, exact) < (most if engine == "dem" else 3e-3)
+    assert off(surface, exact) < (most if engine == "dem" else 3e-3)
     later = times > first + 128 / upper + pulse.centre + 0.5
-    assert wave.max() == pytest.approx(8 / 3, rel=0.02)
-    assert wave[later].min() == pytest.approx(-8 / 9, rel=0.03)
+    assert surface.max() == pytest.approx(8 / 3, rel=0.02)
+    assert surface[later].min() == pytest.approx(-8 / 9, rel=0.03)
 
 
 def inclined(width=8.0, seam=0.0, stiffness=1e10, **numerics):
     """Return joints at 45 degrees, 4 m apart along the base, whose sides are at `seam` (m)."""
-    wave = {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 1e6}
-    joint = {"dip": 45.0, "spacing": 8**0.5, "through": [-seam, 0.0]}
+    joint = {"name": "joint", "dip": 45.0, "spacing": 8**0.5, "through": [-seam, 0.0]}
     law = {"normal_stiffness": 2 * stiffness, "shear_stiffness": stiffness}
-    return load_tables(
-        {
-            "title": "inclined joints",
-            "domain": {"size": [width, 40.0]},
-            "rock": GRANITE,
-            "joint_sets": [{"name": "joint", **joint, **law}],
-            "waves": [wave | {"period": 0.01}],
-            "boundaries": PERIODIC | {"bottom": "quiet", "top": "quiet"},
-            "time": {"duration": 0.03},
-            "record": {"points": [[3.1 - seam, 10.1], [3.1 - seam, 30.1]]},
-            "numerics": numerics,
-        }
+    tables = mass(
+        *(width, 40.0),
+        joint_sets=[joint | law],
+        waves=[wave(period=0.01)],
+        boundaries=PERIODIC | {"bottom": "quiet", "top": "quiet"},
+        time={"duration": 0.03},
+        record={"points": [[3.1 - seam, 10.1], [3.1 - seam, 30.1]]},
+        numerics=numerics,
     )
+    return load_tables(tables)
 
 
 def test_inclined_joints_pass_periodic_sides():
@@ -141,40 +132,33 @@ def test_rigid_blocks_that_inclined_joints_weld_are_intact_rock():
     stiffness, but the sides cut them in two, whose halves stay up to a third of a block apart:
     1.1 % off at blocks of 1 m, half of it at blocks half as large."""
     scene = inclined(stiffness=1e16, dem={"block": 1.0})
-    found, speed = solve("dem", scene), (1.2 * 5e10 / 2600) ** 0.5
+    found, speed = solve("dem", scene), P_SPEED
     pulse = history_of(scene.waves[0], 1e6 / (2600 * speed))
-    for (_, y), wave in zip(scene.record.points, found.velocity.values, strict=True):
-        assert off(wave[:, 1], pulse.value(found.time.values - y / speed)) < 0.015
+    for (_, y), moved in zip(scene.record.points, found.velocity.values, strict=True):
+        assert off(moved[:, 1], pulse.value(found.time.values - y / speed)) < 0.015
 
 
 def cell(sides, force, points, **tables):
     """Return 8 m x 8 m of rock with some periodic sides, which a force moves."""
-    load = {"kind": "force", "quantity": "force", "shape": "ricker", "amplitude": 1e6}
-    return load_tables(
-        {
-            "title": "a cell",
-            "domain": {"size": [8.0, 8.0]},
-            "rock": GRANITE,
-            "loads": [load | {"at": force, "direction": [0.6, 0.8], "period": 5e-3}],
-            "boundaries": dict.fromkeys(sides, "periodic"),
-            "time": {"duration": 0.01},
-            "record": {"points": points},
-            "numerics": {"dem": {"block": 1.0}, "continuum": {"size": 1.0}},
-            **tables,
-        }
-    )
+    own = {
+        "loads": [wave("force", [0.6, 0.8], quantity="force") | {"at": force}],
+        "boundaries": dict.fromkeys(sides, "periodic"),
+        "time": {"duration": 0.01},
+        "record": {"points": points},
+        "numerics": {"dem": {"block": 1.0}, "continuum": {"size": 1.0}},
+    }
+    return load_tables(mass(8.0, 8.0, **own | tables))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_rock_between_two_pairs_of_periodic_sides_has_no_place(engine):
     """Moved by whole blocks and elements, across both sides, all moves alike."""
-    sides, force = ("left", "right", "bottom", "top"), np.array([3.5, 2.5])
+    force, by = np.array([3.5, 2.5]), np.array([3.0, 7.0])
     points = np.array([[1.5, 5.5], [6.5, 0.5]])
-    by = np.array([3.0, 7.0])
-    moved = cell(sides, ((force + by) % 8).tolist(), ((points + by) % 8).tolist())
+    moved = cell(SIDES, ((force + by) % 8).tolist(), ((points + by) % 8).tolist())
     one, other = (
         solve(engine, scene).velocity.values
-        for scene in (cell(sides, force.tolist(), points.tolist()), moved)
+        for scene in (cell(SIDES, force.tolist(), points.tolist()), moved)
     )
     assert np.abs(one).max() > 1e-3
     assert np.abs(one - other).max() < 1e-10 * np.abs(one).max()
@@ -191,10 +175,7 @@ def test_bottom_and_top_are_joined_as_left_and_right_are(engine):
         force[::-1],
         [point[::-1] for point in points],
         joint_sets=[joint | {"dip": 90.0, "through": [1.0, 0.0]}],
-        loads=[
-            one.loads[0].model_dump(exclude_none=True)
-            | {"at": force[::-1], "direction": [0.8, 0.6]}
-        ],
+        loads=[wave("force", [0.8, 0.6], quantity="force") | {"at": force[::-1]}],
     )
     found, other = (solve(engine, scene).velocity.values for scene in (one, turned))
     assert np.abs(found).max() > 1e-3

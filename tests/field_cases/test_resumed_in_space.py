@@ -7,73 +7,54 @@ import pytest
 import jointwave as jw
 from jointwave.cases.errors import InterruptedRun
 from jointwave.compare.engines import solve
+from tests.field_cases.scenes import ENGINES, mass
 
 STIFF = {"normal_stiffness": 1e10, "shear_stiffness": 5e9, "spacing": 1.0}
 SLIPS = {"friction_angle": 25.0, "tension": False}
-WEAKENS = {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-4}
-DILATES = {"dilation_angle": 8.0, "dilation_distance": 1e-3, "damping_ratio": 0.02}
+WEAKENS = SLIPS | {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-4}
+DILATES = SLIPS | {"dilation_angle": 8.0, "dilation_distance": 1e-3, "damping_ratio": 0.02}
 AGES = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-5}
+AGES |= SLIPS | {"reference_rate": 1e-6}
 BREAKS = {"friction_angle": 25.0, "cohesion": 2e5, "tensile_strength": 1e5, "fracture_energy": 1.0}
 CLOSES = {"maximum_closure": 3e-4, "tension": False, "damping_ratio": 0.05}
-EXPLICIT = {"scheme": "explicit", "size": 1.0, "order": 1}
-BASE = {
-    "kind": "base",
-    "side": "bottom",
-    "shape": "ricker",
-    "period": 0.004,
-    "amplitude": 0.2,
-    "quantity": "velocity",
-    "direction": [0.6, 0.0, 0.8],
-}
+BASE = {"kind": "base", "side": "bottom", "quantity": "velocity", "direction": [0.6, 0.0, 0.8]}
+SHAKEN = {"loads": [BASE | {"shape": "ricker", "period": 0.004, "amplitude": 0.2}]}
 
-#: By name: the joints' law, and what else is changed.
+#: By name: the laws of beds and walls, and what else is changed; None leaves a table out.
 RUNS = {
-    "weakening": (SLIPS | WEAKENS, {}),
-    "dilation": (SLIPS | DILATES, {"prestress": None, "gravity": {}}),
-    "rate and state": (SLIPS | AGES | {"reference_rate": 1e-6}, {}),
-    "softening": (BREAKS, {"prestress": None}),
-    "closure, shaken": (CLOSES, {"loads": [BASE]}),
-    "quiet base": (SLIPS, {"loads": [BASE], "boundaries": {"bottom": "quiet"}}),
-    "sudden gravity": (SLIPS, {"prestress": None, "gravity": {"static": False}}),
+    "weakening and dilation under weight": (WEAKENS, DILATES, {"prestress": None, "gravity": {}}),
+    "rate and state on a quiet base": (AGES, AGES, SHAKEN | {"boundaries": {"bottom": "quiet"}}),
+    "softening and closure, shaken": (BREAKS, CLOSES, SHAKEN | {"prestress": None}),
+    "sudden gravity": (SLIPS, SLIPS, {"prestress": None, "gravity": {"static": False}}),
 }
 
 
-def rock(law, changes):
+def rock(beds, walls, changes):
     """Return eight blocks of 1 m by 2 m by 1 m that an oblique blow strikes."""
-    tables = {
-        "title": "a blow on blocks in space",
-        "domain": {"size": [2.0, 2.0, 4.0]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10},
-        "joint_sets": [
-            {"name": "beds", "dip": 0.0, **STIFF, **law},
-            {"name": "walls", "dip": 90.0, "dip_direction": 90.0, **STIFF, **law},
+    blow = {"kind": "force", "quantity": "force", "at": [0.6, 0.9, 4.0], "shape": "half-sine"}
+    tables = mass(
+        *(2.0, 2.0),
+        domain={"size": [2.0, 2.0, 4.0]},
+        joint_sets=[
+            {"name": "beds", "dip": 0.0} | STIFF | beds,
+            {"name": "walls", "dip": 90.0, "dip_direction": 90.0} | STIFF | walls,
         ],
-        "prestress": {"xx": 5e5, "yy": 0.0, "zz": 1e6},
-        "loads": [
-            {
-                "kind": "force",
-                "quantity": "force",
-                "at": [0.6, 0.9, 4.0],
-                "direction": [0.6, 0.0, -0.8],
-                "shape": "half-sine",
-                "amplitude": 4e6,
-                "period": 0.004,
-            }
-        ],
-        "boundaries": {"bottom": "fixed"},
-        "time": {"duration": 0.01},
-        "numerics": {"continuum": EXPLICIT},
-        "record": {
+        prestress={"xx": 5e5, "yy": 0.0, "zz": 1e6},
+        loads=[blow | {"direction": [0.6, 0.0, -0.8], "amplitude": 4e6, "period": 0.004}],
+        boundaries={"bottom": "fixed"},
+        time={"duration": 0.01},
+        numerics={"continuum": {"scheme": "explicit", "size": 1.0, "order": 1}},
+        record={
             "points": [[0.5, 0.5, 3.5], [1.5, 1.5, 1.5]],
             "joints": [[0.5, 0.5, 3.0]],
             "interval": 1e-4,
             "fields": 1e-3,
         },
-    }
+    )
     return jw.load({key: one for key, one in (tables | changes).items() if one is not None})
 
 
-@pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_in_space_goes_on_to_the_same_bits(engine, name, keeper_at):
     scene, keeper = rock(*RUNS[name]), keeper_at(40)

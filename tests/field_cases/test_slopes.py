@@ -12,10 +12,8 @@ import pytest
 
 import jointwave as jw
 from jointwave.cases.errors import SceneError
-from tests.field_cases.scenes import ENGINES, mass, stands
+from tests.field_cases.scenes import ENGINES, WEIGHT, G, mass, slope, stands
 
-DENSITY, HEIGHT, G = 2400.0, 1.0, 9.81
-WEIGHT = DENSITY * G * HEIGHT  # Pa, of the slab
 #: m/s, 1e-10 of what a wave of 1 MPa moves in rock of 4 MPa s/m.
 STILL = 1e-10 * 1e6 / 4e6
 DAMPED = (
@@ -25,22 +23,6 @@ DAMPED = (
 COARSE = {"continuum": {"size": 1.0}}
 SLIPS = {"friction_angle": 22.0, "tension": False}
 LOSES = SLIPS | {"friction_angle": 21.0, "cohesion": 2e3, "residual_cohesion": 2e2}
-
-
-def slope(angle, friction, width=2.0, height=2 * HEIGHT, **tables):
-    """Return the tables of a slab on its fixed base; gravity is tilted (degrees), not the slope."""
-    steep, bed = radians(angle), {"name": "bed", "dip": 0.0, "through": [1.0, HEIGHT]}
-    bed |= {"normal_stiffness": 2e9, "shear_stiffness": 1e9, "tension": False}
-    own = {
-        "rock": {"density": DENSITY, "intact_modulus": 5e10},
-        "joint_sets": [bed | {"friction_angle": friction}],
-        "gravity": {"direction": [sin(steep), -cos(steep)], "acceleration": G},
-        "boundaries": {"bottom": "fixed"},
-        "time": {"duration": 2e-3},
-        "record": {"points": [[1.0, 1.7]], "joints": [[1.0, HEIGHT]], "interval": 2e-4},
-        "numerics": {"dem": {"block": 1.0, "static_tolerance": 1e-11}, "continuum": {"size": 1.0}},
-    }
-    return mass(width, height, **own | tables)
 
 
 def opening(rng):
@@ -63,26 +45,6 @@ def opening(rng):
     )
 
 
-def pillar(rng):
-    """Return a pillar on a fixed end under its inclined weight, whose joints slide, tables."""
-    steep, around = radians(rng.uniform(5.0, 20.0)), rng.uniform(0, 2 * np.pi)
-    down = [sin(steep) * cos(around), cos(steep), sin(steep) * sin(around)]
-    return {
-        "title": "a pillar",
-        "pillar": {"length": 1.0, "side": 1.0, "block": 0.5},
-        "rock": {"density": DENSITY, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 2e10},
-        "joints": SLIPS,
-        "ends": {"end": "fixed"},
-        "gravity": {"direction": down},
-        "time": {"duration": 2e-3},
-        "record": {"stress": [0.5], "velocity": [0.25], "interval": 2e-4},
-        "numerics": {
-            "dem": {"static_tolerance": 1e-11},
-            "continuum": {"scheme": "implicit", "elements_per_block": 1},
-        },
-    }
-
-
 def slopes(rng):
     """Return a slope of random steepness with a few joints that dip either way, tables."""
     law, spacing = (SLIPS, LOSES)[rng.integers(2)], rng.uniform(0.9, 1.4)
@@ -96,8 +58,6 @@ def damped(tables, by):
     """Return tables of the same rock with dashpots in its joints, or with other damping."""
     if "damping_ratio" not in by:
         return tables | {"damping": by}
-    if "joints" in tables:
-        return tables | {"joints": tables["joints"] | by}
     return tables | {"joint_sets": [one | by for one in tables["joint_sets"]]}
 
 
@@ -138,7 +98,7 @@ def test_a_block_that_is_not_cut_bears_its_weight_as_a_whole(block):
 
 
 @pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("make", (slopes, opening, pillar))
+@pytest.mark.parametrize("make", (slopes, opening))
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_static_state_is_the_same_however_motion_is_damped_and_stays(engine, make, seed):
     """Each of some hundred freedoms is in balance within 1e-10 of the forces at work. What is left
@@ -148,7 +108,7 @@ def test_a_static_state_is_the_same_however_motion_is_damped_and_stays(engine, m
     still, other = (
         jw.simulate(jw.load(one), engine) for one in (tables, damped(tables, DAMPED[seed]))
     )
-    for name in {"stress", "shear", "traction"} & set(still.data_vars):
+    for name in ("stress", "traction"):
         first, second = still[name].isel(time=0), other[name].isel(time=0)
         assert float(abs(first - second).max()) < 1e-8 * float(abs(first).max()), name
     for found in (still, other):

@@ -51,17 +51,16 @@ def test_a_step_on_a_joint_that_can_fail_names_the_rise_that_blocks_need():
     assert not [line for line in warnings(fault(0.24)) if "'step'" in line]
 
 
-@pytest.mark.parametrize("shape", ["step", "ricker"])
 @pytest.mark.parametrize("law", [{}, {"tension": False}, {"cohesion": 1e5, "tension": True}])
-def test_a_step_in_a_rock_mass_warns_where_its_joints_can_fail(shape, law, one_joint):
+def test_a_step_in_a_rock_mass_warns_where_its_joints_can_fail(law, one_joint):
     """40 blocks of 0.5 m at 5 GPa and 2600 kg/m3, nu = 0.25: 4804 m/s."""
     scene = one_joint(numerics={"dem": {"block": 0.5}})
     scene["joint_sets"][0] |= law
-    scene["waves"][0] |= {"shape": shape}
-    if shape == "step":
-        del scene["waves"][0]["period"]
+    assert not any("'step'" in line for line in warnings(jw.load(scene)))
+    scene["waves"][0]["shape"] = "step"
+    del scene["waves"][0]["period"]
     said = [line for line in warnings(jw.load(scene)) if "'step'" in line]
-    assert len(said) == (shape == "step" and bool(law))
+    assert len(said) == bool(law)
     assert all("waves[0].shape" in line and "rises in 0.00416 s" in line for line in said)
 
 

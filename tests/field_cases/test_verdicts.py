@@ -17,6 +17,7 @@ from jointwave.compare.misfit.metrics import misfit, pairings
 from jointwave.compare.misfit.pairs import meaning, measure
 from jointwave.compare.misfit.ranking import applicable, kind_of, own_exact, reference_of
 from jointwave.compare.solvers.record import Kind
+from tests.field_cases.scenes import slope
 
 #: In front of the tunnel's right wall, which the wave passes along, and around the tunnel.
 WALL, AROUND = [22.01, 14.0], [[23.0, 15.0], [17.0, 15.0], [25.0, 15.0], [15.0, 15.0]]
@@ -105,32 +106,10 @@ def test_without_intact_rock_an_exact_solution_comes_before_a_computed_one():
         assert {reference_of(name, able, scene).name for name in there[:2]} == {reference}
 
 
-RESTS = {
-    "title": "a block that its friction holds on a slope",
-    "domain": {"size": [2.0, 2.0]},
-    "rock": {"density": 2500.0, "intact_modulus": 5e10},
-    "joint_sets": [
-        {
-            "name": "plane",
-            "dip": 0.0,
-            "through": [1.0, 1.0],
-            "normal_stiffness": 1e9,
-            "shear_stiffness": 4e8,
-            "friction_angle": 21.0,
-            "tension": False,
-        }
-    ],
-    "gravity": {"direction": [0.3420201433256687, -0.9396926207859084]},
-    "boundaries": {"bottom": "fixed"},
-    "time": {"duration": 0.02},
-    "record": {"points": [[1.0, 1.5]], "joints": [[1.0, 1.0]], "interval": 1e-3},
-}
-
-
 def test_what_stays_at_rest_is_not_compared_by_its_round_off():
     """Blocks at rest creep by their static tolerance, 1e-9 m/s, the continuum by 1e-16: "5e+07 %
     far off". A change by a hundred thousandth of the static stress is a motion again."""
-    scene = load_tables(RESTS)
+    scene = load_tables(slope(20.0, 21.0, numerics={}))
     dem, rock = (solve(name, scene) for name in ("dem", "continuum-jointed"))
     assert (dem.velocity != 0).any() and (rock.velocity != 0).any()
     assert misfit(dem, rock) == 0 and not pairings(dem, rock)
