@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointwave.joints.dilation import lift
-from jointwave.joints.law import History, Law, rows_of
+from jointwave.joints.law import History, Law
 from jointwave.joints.tangent import tangent
 from tests.joints.points import DT, at_point, march, some
 
@@ -176,9 +176,3 @@ def test_slip_in_one_direction_is_slip_in_two_without_the_other(name, path):
         for name in ("nn", "xn", "xx", "nx"):
             expected = pytest.approx(getattr(whole, name), rel=1e-8, abs=1.0)
             assert getattr(planar, name) == expected
-
-
-def test_rows_that_a_law_reads():
-    """Of the table, the fields of its parts alone."""
-    names = {Law._fields[row] for row in rows_of(at_point(COULOMB)[1])}
-    assert names == {"normal_stiffness", "shear_stiffness", "cohesion", "friction"}

@@ -60,6 +60,11 @@ def test_a_block_topples_where_its_weight_leaves_its_base(pillar):
     assert incline(pillar, 1.04) > 0.3
 
 
+def test_a_row_without_points_has_no_rotations(pillar):
+    found = dem.simulate(pillar(**(BLOW | {"record__velocity": []})))
+    assert found.rotation.shape == (0, found.sizes["time"], 3)
+
+
 def test_a_row_of_small_rotations_that_turns_too_far_is_refused(row):
     """The line names the key, the block, its angle and the remedy."""
     twist = {"shape": "step", "direction": [0, 1, 0], "arm": 0.1, "amplitude": 1e6}
