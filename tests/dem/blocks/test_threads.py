@@ -6,7 +6,7 @@ import pytest
 
 from jointwave.cases.errors import InterruptedRun, StoppedError
 from jointwave.dem import simulate
-from jointwave.dem.kernel.parts import divided
+from jointwave.dem.kernel.parts import divided, thread_count
 from jointwave.dem.prepare import prepared
 from jointwave.dem.run import plan
 
@@ -111,11 +111,11 @@ def test_each_thread_has_as_many_chunks(everything, narrow):
 
 def test_a_long_row_takes_the_processors_that_it_may_use(monkeypatch, row):
     """Those of this process, by default; a row of less than 40,000 blocks takes one."""
-    brief = {"time__duration": 2e-4, "record": {"stress": [2.0], "energy": False}}
     monkeypatch.setattr(os, "sched_getaffinity", {0: {2, 3, 5}}.__getitem__, raising=False)
-    long, short = (row(pillar__length=x, **brief) for x in (2e4, 19999.5))
-    assert plan(long).threads == 3 and plan(short).threads == 1
+    assert thread_count(None, 40_000, 3) == 3 and thread_count(None, 39_999, 3) == 1
+    brief = {"time__duration": 2e-4, "record": {"stress": [2.0], "energy": False}}
+    assert plan(row(**brief)).threads == 1
     assert plan(row(**brief, numerics__dem__threads=4)).threads == 4
     monkeypatch.delattr(os, "sched_getaffinity")
     monkeypatch.setattr(os, "cpu_count", lambda: None)
-    assert plan(long).threads == 1
+    assert thread_count(None, 40_000, 3) == 1
