@@ -6,13 +6,11 @@ import pytest
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
-from jointwave.continuum.space.compat import cell_nodes
+from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.stepping.scaling import OF_ALL, OF_PIECE, scaled_mass
 
 SHORT = 1e-3  # m, of an edge on top of a block between two joints
 WEDGE = [{"dip": dip, "through": [3.0 + np.sign(dip) * SHORT / 2, 4.0]} for dip in (-80.0, 80.0)]
-
-
 RAYLEIGH = {"rayleigh": {"frequencies": [200.0, 800.0], "ratios": [0.02, 0.02]}}
 
 
@@ -20,10 +18,9 @@ RAYLEIGH = {"rayleigh": {"frequencies": [200.0, 800.0], "ratios": [0.02, 0.02]}}
 def test_the_step_of_a_short_edge_is_longer_by_little_mass(rock_mass, damping):
     scene = rock_mass(*WEDGE, continuum={"size": 0.8}, damping=damping)
     found = body_of(scene)
-    problem, body = problem_of(scene, found), found.body
+    problem, body, block = problem_of(scene, found), found.body, blocks_of_nodes(found.body)
     scaled = scaled_mass(problem)
-    added, block = scaled.mass - body.mass, np.empty(len(body.x), np.int64)
-    block[cell_nodes(body.space)] = body.block[:, None]
+    added = scaled.mass - body.mass
     assert added.min() == 0 and scaled.nodes == np.count_nonzero(added) / 2 < 10
     assert scaled.share == pytest.approx(added.sum() / body.mass.sum()) and scaled.share <= OF_ALL
     of_block = np.bincount(block, added[::2]) / np.bincount(block, body.mass[::2])
