@@ -8,13 +8,11 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.text import Annotation
 
-from jointwave import cases
 from jointwave.cases.read import load_tables
 from jointwave.compare.figures.drawing.plane import THIN, sketch_of
 from jointwave.compare.figures.drawing.scene import pulse_curve, scene_figure
 from jointwave.compare.figures.drawing.sketch import INK, MANY, SETS
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.scenes import find
 
 LAYERS = [{"y": 20.0, "spacing_stiffness": 4.375e8}, {"y": 30.0, "cohesion": 5.0e4}]
 JOINTS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
@@ -87,23 +85,6 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
     ]
 
 
-def test_a_pillar_of_very_many_blocks_is_an_image_with_their_count(pillar):
-    count = 2 * MANY
-    sketch = sketch_of(pillar(pillar__length=0.5 * count))
-    blocks, joints, *_ = sketch.shapes
-    assert blocks.get_rasterized() and joints.get_rasterized()
-    assert f"{count:,} blocks of 0.5 m" in sketch.size
-
-
-@pytest.mark.parametrize("end", ["free", "fixed", "quiet", "matched"])
-def test_ends_are_drawn_as_what_holds_them(pillar, end):
-    figure = drawing(pillar(ends__end=end)).figure
-    assert f"{end} end" in words(figure) and "free start" in words(figure)
-    line = figure.axes[0].collections[-1]
-    assert line.get_segments()[0][:, 0].tolist() == [50.0, 50.0]
-    assert (line.get_linewidth()[0] > 3) == (end == "fixed")
-
-
 @pytest.mark.parametrize(
     ("changes", "count", "said"),
     [
@@ -132,6 +113,12 @@ def test_an_arrow_points_along_the_load(pillar, direction):
     np.testing.assert_allclose(along / np.hypot(*along), direction[1::-1], atol=1e-12)
 
 
+def test_load_is_drawn_from_its_history(pillar):
+    time, values = pulse_curve(pillar().load, pillar().time.duration)
+    assert time[-1] == pytest.approx(0.0125)
+    assert [values.min(), values.max()] == pytest.approx([-1e6, 1e6], rel=1e-4)
+
+
 def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pillar):
     squat = sketch_of(pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0]))
     assert squat.stretch == 1 and "thickness ×" not in squat.size
@@ -139,6 +126,10 @@ def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pill
     across = slender.high[0] - slender.low[0]
     assert slender.stretch * 0.5 == pytest.approx(THIN * across)
     assert f"thickness × {slender.stretch:.2g}" in slender.size
+    count = 2 * MANY
+    blocks, joints, *_ = (many := sketch_of(pillar(pillar__length=0.5 * count))).shapes
+    assert blocks.get_rasterized() and joints.get_rasterized()
+    assert f"{count:,} blocks of 0.5 m" in many.size
 
 
 @pytest.mark.parametrize(
@@ -153,38 +144,6 @@ def test_words_lie_over_nothing_else(pillar, collisions, changes):
     assert collisions(drawing(pillar(**changes)).figure) == []
 
 
-@pytest.mark.parametrize("changes", [{}, {"gravity": {}, "prestress": {"xx": 1e6, "yy": 3e6}}])
-def test_words_of_a_rock_mass_lie_over_nothing_else(collisions, changes):
-    found = collisions(mass(**changes))
-    assert not [one for one in found if "axes" not in one.lower()], found
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        *("eccentric-blow", "torsion", "shaken-base", "block-on-incline", "thin-layer"),
-        *("blast-history", "everything-fails"),
-    ],
-)
-def test_shipped_scenes_are_drawn_within_the_figure(name, ink):
-    folder = "hard" if name == "everything-fails" else "beyond"
-    scenes = cases.load(find(f"{folder}/{name}"))
-    picture = scene_figure("fig", [Comparison(scene) for scene in scenes]).figure
-    assert 0.005 < ink(picture) < 0.3
-    for ax in picture.axes:
-        box = ax.get_tightbbox(picture.canvas.get_renderer())
-        assert box.x0 >= -1 and box.y0 >= -1
-        assert box.x1 <= picture.bbox.x1 + 1 and box.y1 <= picture.bbox.y1 + 1
-
-
-def test_load_is_drawn_from_its_history(pillar):
-    time, values = pulse_curve(pillar().load, pillar().time.duration)
-    assert time[-1] == pytest.approx(0.0125)
-    assert [values.min(), values.max()] == pytest.approx([-1e6, 1e6], rel=1e-4)
-    _, step = pulse_curve(pillar(load={"shape": "step", "amplitude": 2e5}).load, 0.12)
-    assert (step[1:] == 2e5).all()
-
-
 def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     picture = drawing(pillar(), pillar(joints__damping_ratio=0.1), pillar(soft_layers=LAYERS))
     titles = [ax.get_title("left") for ax in picture.figure.axes]
@@ -196,7 +155,7 @@ def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     assert ink(picture.figure) > 0.01
 
 
-def test_every_joint_and_side_is_drawn_and_is_in_the_table():
+def test_every_joint_and_side_is_drawn_and_is_in_the_table(collisions):
     """Five rows of 10 m less 2 m each of the three that the tunnel takes or runs along; four cross
     joints of 6 m less 2 m each of the two along its faces."""
     picture = drawing(load_tables(TABLES))
@@ -205,6 +164,8 @@ def test_every_joint_and_side_is_drawn_and_is_in_the_table():
     assert length(picture.figure, INK) == pytest.approx(2 * (10 + 6) + 2 * (2 + 2))
     sides = ["quiet side", "free side", "fixed side"]
     assert words(picture.figure) == ["rows", "cross", *sides, "point", "point of a joint"]
+    loaded = mass(gravity={}, prestress={"xx": 1e6, "yy": 3e6})
+    assert not [one for one in collisions(loaded) if "axes" not in one.lower()]
     x, y, to_x, to_y = picture.table.loc[:, "from x (m)":].to_numpy(dtype=float).T
     lengths = picture.table.assign(m=np.hypot(to_x - x, to_y - y)).groupby("what").m.sum()
     assert lengths["rows"] == pytest.approx(44) and lengths["cross"] == pytest.approx(20)

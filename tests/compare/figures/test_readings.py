@@ -58,9 +58,6 @@ def test_a_sine_has_the_numbers_of_its_closed_forms(bar):
     squared = (0.5 * 200 * np.pi) ** 2 * 0.01 / 2
     assert first["Arias intensity (m/s)"] == pytest.approx(np.pi / 19.62 * squared, rel=2e-4)
     assert first["speed (m/s)"] == pytest.approx(1000.0, rel=1e-5)
-    assert np.isnan(frame.iloc[0]["speed (m/s)"])
-    lossless = frame["apparent Q"].iloc[1]
-    assert np.isnan(lossless) or lossless > 1e4
     assert 0.5 * 200 * np.pi < first["spectral acceleration (m/s2)"] < 4 * 0.5 * 200 * np.pi
 
 
@@ -96,16 +93,13 @@ def test_nothing_is_read_where_no_velocity_is_recorded(bar, capsys):
     assert said in capsys.readouterr().out
 
 
-def test_a_damped_row_has_the_quality_factor_of_its_joints(row):
-    """1/Q = omega eta at the loudest frequency of a wavelet, which the record, of steps of 21 Hz,
-    has at 104 Hz, not 100, and the loss on the way moves a little."""
-    frame = reading_frame([row]).set_index("solution")
-    expected = 1 / (2 * np.pi * 100 * calibrate(row.scene).time_constant)
-    assert frame.loc["lattice", "apparent Q"].iloc[-1] == pytest.approx(expected, rel=0.15)
-
-
 def test_a_damped_chain_is_its_theory(row):
-    """Phase speed and 1/Q of rigid blocks."""
+    """Phase speed and 1/Q of rigid blocks; in the table 1/Q = omega eta at the loudest frequency of
+    a wavelet, which the record, of steps of 21 Hz, has at 104 Hz, not 100, and the loss on the way
+    moves a little."""
+    expected = 1 / (2 * np.pi * 100 * calibrate(row.scene).time_constant)
+    found = reading_frame([row]).set_index("solution").loc["lattice", "apparent Q"]
+    assert found.iloc[-1] == pytest.approx(expected, rel=0.15)
     curves = curves_of(row)
     for solution in ("dem", "lattice"):
         speed, theory = (curves[name]["phase speed (m/s)"] for name in (solution, THEORY))

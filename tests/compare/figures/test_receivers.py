@@ -8,9 +8,7 @@ from jointwave.compare.engines import solve
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.receivers import curve_table, panels
-from jointwave.compare.figures.tables import distance_frame
-from jointwave.compare.misfit.pairs import Comparison, measure
-from jointwave.compare.report.tables import misfit_table
+from jointwave.compare.misfit.pairs import Comparison
 
 RECORD = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
 ACROSS = {"load__direction": [1.0, 0.0, 0.0]}
@@ -117,24 +115,3 @@ def test_the_static_state_is_taken_from_a_waveform_and_said(solved):
     assert upper.get_ylabel() == "stress (MPa)\nless 2 at rest"
     assert np.abs(upper.lines[1].get_ydata()).max() < 1.1
     assert curve_table(found[1:]).iloc[0, 1] == pytest.approx(2e6)
-
-
-def test_gravity_that_stands_is_no_motion(solved):
-    """Where it is there from the start, the first sample is at rest."""
-    found = solved("lattice", gravity__direction=[0.0, 1.0, 0.0], ends__end="fixed")
-    stress, _ = panels([found])[0]
-    assert stress.at_rest == pytest.approx(2400 * 9.81 * 5.0, rel=0.02)
-    assert stress.curves["lattice"].iloc[0] == 0
-
-
-def test_tables_name_places_in_the_plane(joint):
-    """Two variants beside each other as two solutions would be: a row a place, x and y apart."""
-    one, other = joint(30.0), joint(0.0, "continuum-jointed")
-    one.rows = measure(other.results | one.results)
-    frame = distance_frame([one])
-    assert {"x (m)", "y (m)"} <= set(frame) and set(frame["y (m)"]) == {5.0, 10.0}
-    assert {"velocity x", "slip"} <= set(frame.quantity)
-    table = misfit_table([one])
-    places = {"velocity x at [10, 5] m", "traction n at [10, 10] m"}
-    assert {f"base scene, {place}" for place in places} < {*table.index}
-    assert list(table) == [("numerical error", "continuum-jointed ~ oblique-joint (%)")]

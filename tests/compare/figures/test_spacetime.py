@@ -4,10 +4,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from closed_forms import leapfrog
-from jointwave import dem
-from jointwave.cases.loads import load_history, step_means
-from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.engines import solve
 from jointwave.compare.figures import scene_figures
 from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
@@ -17,50 +13,6 @@ from jointwave.compare.figures.scene_figures import along_pillar, recorded_along
 def fields_of(scene, *names):
     """Return the result of `along_pillar` for these solutions only."""
     return {name: solve(name, recorded_along(scene)) for name in names}
-
-
-def test_front_moves_at_the_speed_of_the_bar(pillar):
-    """By the first crossing of half the load, fitted over the middle of the pillar."""
-    scene = pillar(time__duration=0.045)
-    (shown,) = diagrams_of(scene, {"dem": fields_of(scene, "images")["images"]})
-    (diagram,), arrivals = shown.diagrams, []
-    level = 0.5e6 / diagram.unit.size
-    for row in diagram.values[5:-5]:
-        i = int(np.argmax(row > level))
-        arrivals.append(np.interp(level, row[i - 1 : i + 1], shown.time[i - 1 : i + 1]))
-    speed = np.polyfit(arrivals, shown.y[5:-5], 1)[0]
-    assert speed == pytest.approx(calibrate(scene).bar_speed, rel=1e-3)
-
-
-def test_difference_from_what_the_engine_is_exactly_is_round_off(pillar):
-    """Against leapfrog's closed form, at every joint and sample."""
-    scene = recorded_along(pillar(time__duration=0.03))
-    result, p = dem.simulate(scene), calibrate(scene)
-    samples, dt = result.sizes["time"], result.attrs["dt"]
-    stride = round(scene.interval / dt)
-    force = p.area * step_means(load_history(scene), dt, stride * (samples - 1))
-    k = p.regular_stiffness * p.area
-    steps = stride * np.arange(samples)
-    u = leapfrog.displacements(force, steps, dt, k, p.block_mass, p.block_count)
-    joints = np.rint(result.stress_y.values[1:-1] / p.spacing).astype(int)
-    inner = result.isel(stress_y=slice(1, -1))
-    closed = inner.assign(stress=(("stress_y", "time"), k / p.area * (u[joints - 1] - u[joints])))
-    shown, errors = diagrams_of(scene, {"dem": inner, "lattice": closed})
-    assert [d.name for d in shown.diagrams] == ["rigid blocks"] and errors.exact
-    assert [d.name for d in errors.diagrams] == ["rigid blocks − rigid blocks, exact"]
-    (difference,) = errors.diagrams
-    assert 0 < difference.share < 1e-9 and "at most" in difference.heading
-    largest, peak = (np.abs(x).max() for x in (difference.values, closed.stress.values))
-    assert largest * difference.unit.size == pytest.approx(difference.share * peak, rel=1e-6)
-
-
-def test_the_range_of_a_field_says_that_tension_is_cut(pillar):
-    """Where joints bar it, nothing is blue but the load itself: the least stress is none."""
-    scene = pillar(time__duration=0.03, joints__tension=False, joints__damping_ratio=0.02)
-    shown = diagrams_of(scene, fields_of(scene, "dem"))[0].diagrams[0]
-    inner = shown.values[1:-1]
-    assert shown.heading.endswith(f"between the ends 0 to {inner.max():.4g}")
-    assert inner.min() == 0 < inner.max()
 
 
 def test_a_scene_that_records_velocities_is_drawn_by_them(pillar):
@@ -147,12 +99,23 @@ def test_largest_force_is_drawn_else_what_turns(pillar, peaks, words, unit):
 
 
 def test_diagrams_hold_the_numbers_of_the_table(scene_with, ink):
-    """A soft layer is drawn through each of them."""
+    """And these are of the engine, and of the difference from another, whose largest value is said.
+    A soft layer is drawn through each of them."""
     layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
     scene = scene_with(soft_layers=[layer], **{"time.duration": 0.03})
     found = fields_of(scene, "dem", "equivalent-bar")
     fields = {"dem": found["dem"], "continuum-equivalent": found["equivalent-bar"]}
-    picture = space_time("fig", scene, "soft layer", diagrams_of(scene, fields)[0])
+    one, other = (result.stress.values for result in fields.values())
+    shown = diagrams_of(scene, fields)[0]
+    for diagram, values in zip(shown.diagrams, (one, one - other), strict=True):
+        np.testing.assert_allclose(diagram.unit.size * diagram.values, values, rtol=1e-12)
+    stress, difference = shown.diagrams
+    share = difference.share * np.abs(other).max()
+    assert share == pytest.approx(np.abs(one - other).max()) and "at most" in difference.heading
+    inner = stress.values[1:-1]
+    ends = " to ".join(f"{x:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
+    assert stress.heading.endswith(f"between the ends {ends}")
+    picture = space_time("fig", scene, "soft layer", shown)
     drawn = [ax for ax in picture.figure.axes if ax.get_title(loc="left")]
     assert len(drawn) == 2 and "soft layer" in picture.title
     for ax, column in zip(drawn, picture.table.columns[2:], strict=True):

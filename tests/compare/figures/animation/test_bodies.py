@@ -9,7 +9,6 @@ from matplotlib.colors import Normalize
 from jointwave.compare.figures.animation.bodies import FRONT, OBLIQUE, Body, BodyView, body_of
 from jointwave.compare.figures.animation.settings import (
     PRINCIPAL,
-    SPEED,
     STRESS,
     VELOCITY,
     ViewSettings,
@@ -73,11 +72,6 @@ def test_colours_of_a_shear_wave_are_the_velocity_upwards(row):
     assert profile.loc[1].tolist() == pytest.approx([0.5])  # 1e-3 rad x 0.5 m, in a millisecond
 
 
-def test_speed_is_that_of_the_corners(row):
-    body = body_at(row(displacement=lambda x: 0 * x + [0.0, 3e-3, 4e-3]), quantity=SPEED)
-    np.testing.assert_allclose(body.values, np.outer([0.0, 5.0], np.ones(18)))
-
-
 def test_the_principal_stress_of_larger_size_in_the_plane_and_in_space(row):
     """Of 3, -5 (and 1) MPa in random axes, and of a state in one plane by either rule."""
     turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
@@ -99,18 +93,6 @@ def picture(body, per_away, i):
         BodyView(ax, body, COLOURS, per_away).show(i)
         figure.canvas.draw()
     return np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
-
-
-def test_a_body_is_where_it_moves_to_in_the_colours_of_its_faces():
-    """A plate in two halves moves by its length: the left one red, the right one blue."""
-    motion = np.zeros((2, 6, 3))
-    motion[1, :, 0] = 4.0
-    faces, values = np.array([[0, 1, 4, 5], [1, 2, 3, 4]]), np.array([[0.0, 0.0], [1.0, -1.0]])
-    shown = picture(Body(PLATE, motion, faces, values, np.arange(2)), FRONT, 1)
-    height, width = shown.shape[:2]
-    empty, _, red, blue = (shown[height // 2, int((k + 0.5) / 4 * width)] for k in range(4))
-    assert (empty == 255).all()
-    assert red[0] > red[2] + 50 and blue[2] > blue[0] + 50
 
 
 @pytest.mark.parametrize("order", [[0, 1], [1, 0]])
