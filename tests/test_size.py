@@ -19,7 +19,6 @@ from jointwave.cases.records import read_columns, read_history
 from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.size import LIMIT, memory
 from jointwave.compare.engines import solve
-from jointwave.compare.exact.bar import images
 from jointwave.compare.misfit.external_netcdf import read_netcdf
 from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS
 from jointwave.compare.report import peers
@@ -88,13 +87,6 @@ def test_a_large_run_is_refused_with_its_estimate(pillar, limit, name):
     tracemalloc.stop()
     assert "100 MB available" in str(error.value) and len(str(error.value).splitlines()) == 1
     assert most < AT_ONCE
-
-
-def test_a_bar_that_is_run_through_without_end_has_no_images(pillar):
-    scene = pillar(time__duration=5e4, record__interval=1.0, load__period=1.0)
-    assert images.applies(scene)
-    longer = pillar(time__duration=1e5, record__interval=1.0, load__period=1.0)
-    assert "1,000,000 times" in images.applies(longer).reason
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from jointwave import load, simulate
-from jointwave.cases.errors import SceneError
 from tests.field_cases.scenes import ENGINES, SIDES, mass
 
 RHO, G, H = 2500.0, 9.81, 20.0
@@ -119,11 +118,3 @@ def test_matched_end_bears_a_row_across_its_axis(solver, static):
     leaning = run(PILLAR, solver, **changes)
     assert leaning["shear"].values[0, 0, 0] == pytest.approx(RHO * G * 5.0, rel=1e-6)
     assert static == (np.abs(leaning.velocity.values).max() < 1e-9)
-
-
-@pytest.mark.parametrize("static", [True, False])
-@pytest.mark.parametrize(("scene", "up"), [(PILLAR, {"ends": {"end": "free", "start": "quiet"}}),
-                                           (ROCK, {"boundaries": {"top": "quiet"}})])  # fmt: skip
-def test_what_hangs_on_a_quiet_side_is_refused_with_the_way_out(scene, up, static):
-    with pytest.raises(SceneError, match=r"needs a fixed (end|side)|quiet or matched end below"):
-        load(scene, changes={**quiet(scene), **up, "gravity.static": static})

@@ -2,8 +2,8 @@
 
 Milankovitch: a semicircular arch stands from a thickness of 0.1075 times the radius of its centre
 line on, with continuous radial joints that do not slide. Of 17 voussoirs with chords for faces a
-linear programme finds 0.1055: forces at both ends of every joint, pushing, in balance with the
-weights (lower bound theorem; friction of 80 degrees decides nothing). Contact points at a lever of
+linear programme finds 0.1055: a thrust line within the arch, in balance with the weights (lower
+bound theorem; friction of 80 degrees decides nothing). Contact points at a lever of
 the half thickness from the centre line divide it by the lever: the thrust line reaches no farther.
 
 A wedge slides along the line s in which its planes meet. Its weight less the part along s is borne
@@ -55,28 +55,27 @@ def arch(thickness, **rule):
 
 
 def reserve(thickness, reach=1.0):
-    """Return by how much, in m2 of rock's weight, forces at `reach` of the half thickness of
-    all joints can push at least; negative where no thrust line stays within."""
-    ends = RADIUS + reach * thickness / 2 * np.array([-1.0, 1.0])
-    count = 4 * len(ANGLES)  # of each joint: pushes at both ends, shears at both ends
-    balance, weight = np.zeros((3 * VOUSSOIRS, count + 1)), np.zeros(3 * VOUSSOIRS)
+    """Return the least margin (m3 of rock's weight, a moment) of the best thrust line, which
+    crosses all joints within `reach` of the half thickness; negative where none does.
+
+    A force f with the moment m about the centre enters at the right; of what is below joint i the
+    weight W and its moment M are taken off, and N = f.ALONG crosses it at the radius (m - M) / N.
+    """
     faces = RADIUS + thickness / 2 * np.array([-1.0, 1.0])
-    for i in range(VOUSSOIRS):
-        corners = np.concatenate([faces[0] * RADIAL[i : i + 2], faces[1] * RADIAL[[i + 1, i]]])
-        centre, area = centroid(corners)
-        weight[3 * i + 1] = abs(area)
-        for joint, sign in ((i, 1.0), (i + 1, -1.0)):
-            for k, r in enumerate(ends):
-                arm = r * RADIAL[joint] - centre
-                for column, force in ((k, ALONG[joint]), (2 + k, RADIAL[joint])):
-                    x, y = sign * force
-                    moment = arm[0] * y - arm[1] * x
-                    balance[3 * i : 3 * i + 3, 4 * joint + column] = x, y, moment
-    pushes = np.flatnonzero((np.arange(count) % 4) < 2)
-    at_least = np.zeros((pushes.size, count + 1))
-    at_least[np.arange(pushes.size), pushes], at_least[:, -1] = -1.0, 1.0
-    most = np.append(np.zeros(count), -1.0)
-    return linprog(most, at_least, np.zeros(pushes.size), balance, weight, (None, None)).x[-1]
+    ends = RADIUS + reach * thickness / 2 * np.array([-1.0, 1.0])
+    blocks = [
+        centroid(np.concatenate([faces[0] * RADIAL[i : i + 2], faces[1] * RADIAL[[i + 1, i]]]))
+        for i in range(VOUSSOIRS)
+    ]
+    area = np.abs([one for _, one in blocks])
+    weight = np.append(0.0, np.cumsum(area))
+    moment = np.append(0.0, np.cumsum(area * [centre[0] for centre, _ in blocks]))
+    rows, most, ones = [], [], np.ones(len(ANGLES))
+    for r, sign in zip(ends, (1, -1), strict=True):
+        rows.append(np.column_stack([sign * r * ALONG, -sign * ones, ones]))
+        most.append(sign * (r * ALONG[:, 1] * weight - moment))
+    found = linprog([0, 0, 0, -1], np.concatenate(rows), np.concatenate(most), bounds=(None, None))
+    return found.x[-1]
 
 
 def centroid(corners):

@@ -5,7 +5,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from hard_runs import BLOCKS, CUBES, EPS, ROCK, SCHEMES, HardRun, marked
+from hard_runs import BLOCKS, CUBES, EPS, JOINT, ROCK, SCHEMES, HardRun, marked
 from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import relative_l2
@@ -32,6 +32,15 @@ INCOMPRESSIBLE = {
     "record.stress": [2.0],
 }
 SLENDER = {"pillar.side": 0.0005, "pillar.length": 2.0, "record.stress": [1.0]}
+
+
+def test_joints_a_little_stiffer_are_beyond_the_phase_error():
+    """A twentieth on every joint is seen: the bound is no wider than what it bounds."""
+    run = HardRun("dem", "leapfrog")
+    layers = [{"y": 0.5 * j, "normal_stiffness": 1.05 * JOINT} for j in range(1, 20)]
+    assert run.referee()[1] < run.allowed()
+    run.result = run.run(soft_layers=layers)
+    assert run.referee()[1] > run.allowed()
 
 
 @pytest.mark.parametrize(("engine", "scheme"), marked(SCHEMES))

@@ -1,4 +1,4 @@
-"""Joints of almost no stiffness or almost no compliance, and chains of any contrast."""
+"""Joints of almost no stiffness or compliance, chains of any contrast, joints about to open."""
 
 from math import sqrt
 
@@ -6,10 +6,20 @@ import numpy as np
 import pytest
 
 from closed_forms.modes import modes, of_modes
-from hard_runs import BLOCKS, JOINT, REFEREE, ROUND_OFF, SCHEMES, HardRun, marked
+from hard_runs import (
+    BLOCKS,
+    EPS,
+    JOINT,
+    JOINTED,
+    REFEREE,
+    ROUND_OFF,
+    SCHEMES,
+    HardRun,
+    marked,
+)
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.sampling import interpolation
-from jointwave.compare.exact.bar.bars import JOINTED
+from jointwave.compare.exact.bar import bars
 from jointwave.compare.misfit.metrics import relative_l2
 
 #: Rigid rock, so that blocks move by their joints alone.
@@ -63,7 +73,7 @@ def test_joint_of_almost_no_compliance_leaves_whole_rock(scheme, times):
     layer = {"y": 5.0, "normal_stiffness": times * JOINT}
     changes = {"soft_layers": [layer]} | ({"step": 0.9} if scheme == "explicit" else {})
     run = HardRun("continuum-jointed", scheme, changes)
-    exact = JOINTED.run(run.read(soft_layers=[layer | {"normal_stiffness": 1e30}]))
+    exact = bars.JOINTED.run(run.read(soft_layers=[layer | {"normal_stiffness": 1e30}]))
     p = run.properties
     delay = p.impedance * 2 * run.peak / (2 * layer["normal_stiffness"])
     passes = p.bar_speed * run.duration / run.scene.pillar.length
@@ -102,3 +112,34 @@ def off_chain(run):
     left, right, weight = interpolation(centres, run.scene.record.velocity)
     exact = (1 - weight[:, None]) * u[left] + weight[:, None] * u[right]
     return relative_l2(run.result["displacement"].values[..., 0], exact)
+
+
+LOOSE = {"joints.tension": False, "time.duration": 0.03}
+SLOW = [("continuum-jointed", "explicit"), ("continuum-jointed", "implicit")]
+EVERY = [one for one in JOINTED if one[1] != "fourth-order"]  # force evaluation has a sample
+
+
+@pytest.mark.parametrize(("engine", "scheme"), marked(EVERY, SLOW))
+def test_prestress_of_just_the_largest_tension_leaves_every_joint_closed(engine, scheme):
+    """The elastic pillar under the same prestress, p, gives that tension; there the traction of
+    tension-free joints is zero, to round-off, and they behave like elastic ones."""
+    run = HardRun(engine, scheme, LOOSE)
+    dt = 0.5 * run.critical
+    clock = {"step": 0.5, "record__interval": dt, "record__velocity": []}
+    clock["record__stress"] = run.properties.joint_y.tolist()
+    free = run.run(**clock, joints__tension=True, prestress__normal=0.0)
+    p = -float(free["stress"].values.min())
+    bound, loose = (
+        run.run(**clock, joints__tension=tension, prestress__normal=p)["stress"].values
+        for tension in (True, False)
+    )
+    assert relative_l2(loose, bound) <= 10 * EPS * float(free.attrs["steps"])
+
+
+@pytest.mark.parametrize(("engine", "scheme"), marked(JOINTED, SLOW[1:]))
+def test_gaps_of_1e_40_m_open_and_close_like_large_ones(engine, scheme):
+    """Tension-free joints have no scale: a load smaller by a power of two gives the same result in
+    every digit."""
+    run, small = HardRun(engine, scheme, LOOSE), 2.0**-99
+    one, other = (run.run(load__amplitude=a)["stress"].values for a in (1.0, small))
+    assert np.array_equal(other / small, one)
