@@ -8,15 +8,17 @@ import gc
 import hashlib
 import json
 import os
+import signal
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import gettempdir
+from threading import current_thread, main_thread
 from typing import Any, TypeVar
 
 from joblib import Parallel, delayed
@@ -135,7 +137,23 @@ def _parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )
     about = work, Path.cwd(), count > 1
-    yield from run(delayed(_named)(*one, *about) for one in points.items())
+    with _ignoring_interrupts():
+        found = run(delayed(_named)(*one, *about) for one in points.items())
+    yield from found
+
+
+@contextmanager
+def _ignoring_interrupts() -> Iterator[None]:
+    """Ignore Ctrl-C, as workers that start meanwhile do from then on: it is for this process, which
+    ends them."""
+    if current_thread() is not main_thread():  # where signals never arrive
+        yield
+        return
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
 
 
 def _named(
