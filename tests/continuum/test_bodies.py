@@ -73,10 +73,8 @@ def test_bricks_may_face_others_across_periodic_sides(made):
     """Three rows, each offset by 0.3 of a brick: the bottom's ends are not those of the top."""
     beds = {"name": "beds", "dip": 0.0, "spacing": 1.0}
     heads = {"dip": 90.0, "spacing": 1.5, "ends_at": ["beds"], "offset": 0.3}
-    sides = {"bottom": "periodic", "top": "periodic"}
-    found = made(
-        beds, heads, continuum={"size": 0.6}, boundaries=sides, domain={"size": [6.0, 3.0]}
-    )
+    tables = {"domain": {"size": [6.0, 3.0]}, "continuum": {"size": 0.6}}
+    found = made(beds, heads, boundaries={"bottom": "periodic", "top": "periodic"}, **tables)
     body, (across,) = found.body, found.across
     assert len(across.contacts) > 5  # than four or five bricks of one row
     reaches = body.joints.column >= len(found.blocks.contacts)

@@ -1,4 +1,5 @@
-"""The critical step is sharp: bounded just below it, growing without limit just above."""
+"""The critical step is sharp: bounded just below it, growing without limit just above; and where a
+few small cells would shorten it, their mass is bounded, told, and without a force of its own."""
 
 import numpy as np
 import pytest
@@ -7,23 +8,34 @@ from scipy.sparse import csr_matrix
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.continuum import simulate
+from jointwave.continuum.problem import problem_of
+from jointwave.continuum.scene import body_of
+from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.stepping.critical import critical_step
+from jointwave.continuum.stepping.scaling import OF_ALL, OF_PIECE, scaled_mass
 
-SHORT = {"load__amplitude": 1.0, "pillar__length": 4.0}
-LAYER = {"soft_layers": [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]}
 DAMPED = {"joints__damping_ratio": 0.05}
+LAYER = {"soft_layers": [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]}
+ABSORBS = {"ends__start": "quiet", "ends__end": "matched"}
+#: Model, dimension, keys and numerics; four blocks of a bar, two in the plane and in space.
 KINDS = {
-    "undamped": {},
-    "soft layer": LAYER,
-    "damped soft layer": {**DAMPED, **LAYER},
-    "quiet": {"ends__start": "quiet", "ends__end": "quiet"},
-    "damped quiet": {**DAMPED, "ends__end": "quiet"},
-    "matched": {"ends__start": "matched", "ends__end": "matched"},
-    "damped matched": {**DAMPED, "ends__start": "quiet", "ends__end": "matched"},
-    "fixed": {"ends__end": "fixed"},
+    "undamped": ("jointed", 1, {}, {}),
+    "damped, soft layer": ("jointed", 1, DAMPED | LAYER, {}),
+    "quiet": ("jointed", 1, {"ends__start": "quiet", "ends__end": "quiet"}, {}),
+    "matched": ("jointed", 1, {"ends__start": "matched", "ends__end": "matched"}, {}),
+    "damped, absorbing": ("jointed", 1, DAMPED | ABSORBS, {}),
+    "linear": ("jointed", 1, DAMPED, {"order": 1}),
+    "quartic": ("jointed", 1, DAMPED, {"order": 4}),
+    "homogenised": ("equivalent", 1, {"ends__end": "fixed"}, {}),
+    "homogenised, damped, soft layer": ("equivalent", 1, DAMPED | LAYER, {}),
+    "plane": ("jointed", 2, {}, {}),
+    "plane, cubic": ("jointed", 2, DAMPED, {"order": 3}),
+    "plane, triangles": ("jointed", 2, DAMPED, {"cell": "simplex"}),
+    "plane, absorbing": ("jointed", 2, DAMPED | ABSORBS, {}),
+    "space, two across": ("jointed", 3, DAMPED, {"order": 1, "elements_across": 2}),
+    "space, tetrahedra": ("jointed", 3, DAMPED, {"order": 1, "cell": "simplex"}),
+    "plane wave in space": ("jointed", 3, {"motion__rotation": "none"} | DAMPED, {}),
 }
-
-
 STEPS, EVERY = 50_000, 250
 
 
@@ -42,49 +54,17 @@ def stepped(short, model, dim, changes, fraction):
     return result
 
 
-def is_sharp(*case):
+@pytest.mark.parametrize("kind", KINDS)
+def test_critical_step_is_sharp(short, kind):
     """Nothing grows at 0.999 of it, and 0.1 % above the run is lost."""
-    v = np.abs(stepped(*case, 0.999).velocity.values)
+    model, dim, keys, numerics = KINDS[kind]
+    case = {f"numerics__continuum__{key}": value for key, value in numerics.items()} | keys
+    case |= {"load__amplitude": 1.0, "pillar__length": 4.0 if dim == 1 else 1.0}
+    v = np.abs(stepped(short, model, dim, case, 0.999).velocity.values)
     half = v.shape[1] // 2
     assert v.any() and v[:, half:].max() < 2 * v[:, :half].max()
     with pytest.raises(UnstableError):
-        stepped(*case, 1.001)
-
-
-@pytest.mark.parametrize("model", ["jointed", "equivalent"])
-@pytest.mark.parametrize("kind", KINDS)
-def test_critical_step_is_sharp(short, kind, model):
-    is_sharp(short, model, 1, SHORT | KINDS[kind])
-
-
-@pytest.mark.parametrize("order", [1, 3, 4])
-def test_critical_step_is_sharp_at_every_order(short, order):
-    is_sharp(short, "jointed", 1, SHORT | DAMPED | {"numerics__continuum__order": order})
-
-
-IN_SPACE = {
-    "plane": (2, {}),
-    "plane, cubic": (2, {"numerics__continuum__order": 3, **DAMPED}),
-    "plane, triangles": (2, {"numerics__continuum__cell": "simplex", **DAMPED}),
-    "plane, matched": (2, {**DAMPED, "ends__start": "quiet", "ends__end": "matched"}),
-    "space": (3, {}),
-    "space, two across": (
-        3,
-        {**DAMPED, "numerics__continuum__order": 1, "numerics__continuum__elements_across": 2},
-    ),
-    "space, tetrahedra": (
-        3,
-        {**DAMPED, "numerics__continuum__cell": "simplex", "numerics__continuum__order": 1},
-    ),
-    "plane wave in space": (3, {"motion__rotation": "none", **DAMPED}),
-}
-
-
-@pytest.mark.parametrize("kind", IN_SPACE)
-def test_critical_step_is_sharp_in_space(short, kind):
-    """Joints, dashpots, elements of every kind, in two blocks."""
-    dim, changes = IN_SPACE[kind]
-    is_sharp(short, "jointed", dim, {"load__amplitude": 1.0, "pillar__length": 1.0} | changes)
+        stepped(short, model, dim, case, 1.001)
 
 
 @pytest.mark.parametrize(
@@ -121,31 +101,28 @@ def test_step_above_the_critical_one_is_refused(pillar):
         simulate(pillar(numerics__continuum__step_fraction=1.5))
 
 
-def test_run_that_was_forced_above_the_critical_step_is_stopped_and_dated(pillar):
-    scene = pillar(numerics__continuum__step_fraction=1.2, numerics__continuum__allow_unstable=True)
-    with pytest.raises(UnstableError, match=r"diverged at t = .* s, step \d+ of .* times the"):
-        simulate(scene)
-
-
-def of_matrices(stiffness, viscosity):
-    """Return the critical step of masses of 1 kg on springs and dashpots, s."""
+def of_matrices(stiffness, viscosity=None, given=()):
+    """Return the critical step of masses of 1 kg on springs and dashpots, s; given : freedoms whose
+    motion is."""
     matrices = csr_matrix(stiffness), None if viscosity is None else csr_matrix(viscosity)
-    return critical_step(np.ones(len(stiffness)), *matrices, np.zeros(0, int))
+    return critical_step(np.ones(len(stiffness)), *matrices, np.array(given, int))
 
 
-def test_critical_step_of_one_freedom():
-    """omega = 3: 2/3 s. With a dashpot of C / M = 2: 9 dt^2 + 8 dt = 4, 2 (sqrt(13) - 2) / 9 s."""
-    spring, dashpot = np.array([[9.0]]), np.array([[2.0]])
-    assert of_matrices(spring, None) == pytest.approx(2 / 3, rel=1e-15)
-    damped = 2 * (np.sqrt(13) - 2) / 9
-    assert of_matrices(spring, dashpot) == pytest.approx(damped, rel=1e-12)
-
-
-def test_critical_step_where_dashpots_decide_the_mode():
-    """The stiffest freedom is bounded by 2/3 s, the most damped one, 1 + 16 dt = 4 / dt, by less:
-    (sqrt(68) - 8) s = 0.2462 s."""
-    found = of_matrices(np.diag([9.0, 1.0]), np.diag([0.0, 4.0]))
-    assert found == pytest.approx(np.sqrt(68) - 8, rel=1e-12)
+@pytest.mark.parametrize(
+    ("springs", "dashpots", "given", "dt"),
+    [
+        ([9.0], None, (), 2 / 3),
+        ([9.0], [2.0], (), 2 * (np.sqrt(13) - 2) / 9),
+        ([9.0, 1.0], [0.0, 4.0], (), np.sqrt(68) - 8),
+        ([9.0, 1.0], None, [0], 2.0),
+    ],
+    ids=["spring", "dashpot", "dashpots decide", "motion is given"],
+)
+def test_critical_step_of_single_freedoms(springs, dashpots, given, dt):
+    """omega = 3: 2/3 s. With a dashpot of C / M = 2: 9 dt^2 + 8 dt = 4. The stiffest is bounded by
+    2/3 s, the most damped one, 1 + 16 dt = 4 / dt, by less. What is given bounds nothing."""
+    found = of_matrices(np.diag(springs), None if dashpots is None else np.diag(dashpots), given)
+    assert found == pytest.approx(dt, rel=1e-12)
 
 
 def test_critical_step_of_modes_that_dashpots_turn():
@@ -158,6 +135,44 @@ def test_critical_step_of_modes_that_dashpots_turn():
     assert largest == pytest.approx(4.0, rel=1e-10)
 
 
-def test_freedoms_whose_motion_is_given_do_not_bound_it():
-    found = critical_step(np.ones(2), csr_matrix(np.diag([9.0, 1.0])), None, np.array([0]))
-    assert found == pytest.approx(2.0, rel=1e-15)
+SHORT = 1e-3  # m, of an edge on top of a block between two joints
+WEDGE = [{"dip": dip, "through": [3.0 + np.sign(dip) * SHORT / 2, 4.0]} for dip in (-80.0, 80.0)]
+RAYLEIGH = {"rayleigh": {"frequencies": [200.0, 800.0], "ratios": [0.02, 0.02]}}
+
+
+@pytest.mark.parametrize("damping", [{}, RAYLEIGH])
+def test_the_step_of_a_short_edge_is_longer_by_little_mass(rock_mass, damping):
+    scene = rock_mass(*WEDGE, continuum={"size": 0.8}, damping=damping)
+    found = body_of(scene)
+    problem, body, block = problem_of(scene, found), found.body, blocks_of_nodes(found.body)
+    scaled = scaled_mass(problem)
+    added = scaled.mass - body.mass
+    assert added.min() == 0 and scaled.nodes == np.count_nonzero(added) / 2 < 10
+    assert scaled.share == pytest.approx(added.sum() / body.mass.sum()) and scaled.share <= OF_ALL
+    of_block = np.bincount(block, added[::2]) / np.bincount(block, body.mass[::2])
+    assert of_block.max() <= OF_PIECE
+    before, after = (
+        problem._replace(body=body._replace(mass=mass)).critical_step()
+        for mass in (body.mass, scaled.mass)
+    )
+    assert before <= scaled.before and after > 3 * before
+
+
+def test_a_regular_mesh_has_its_own_mass(rock_mass):
+    scene = rock_mass({"dip": 30.0, "through": [3.0, 2.0]})
+    assert scaled_mass(problem_of(scene, body_of(scene))) is None
+
+
+@pytest.mark.parametrize("scheme", ["explicit", "implicit"])
+def test_rock_at_rest_under_its_weight_stays_at_rest(rock_mass, caplog, scheme):
+    """Added mass has its weight; implicit steps have none."""
+    scene = rock_mass(
+        *WEDGE,
+        continuum={"size": 0.8, "scheme": scheme, "steps_per_period": 50},
+        gravity={"direction": [0.0, -1.0]},
+        boundaries={"bottom": "fixed", "left": "roller", "right": "roller"},
+        time={"duration": 1e-4},
+    )
+    result = simulate(scene)
+    assert ("have more mass" in caplog.text) == (scheme == "explicit")
+    assert np.abs(result["velocity"]).max() < 1e-9

@@ -6,7 +6,7 @@ import pytest
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
 from jointwave.continuum.space.compat import cell_nodes
-from tests.continuum.bodies import STIFFNESS, pushed, springs
+from tests.continuum.bodies import STIFFNESS, blow, pushed, springs
 from tests.continuum.drawing import DIMENSION, drawn
 
 STEEP = (0.6, 1.3)  # y at x = -0.2 and at x = 0.2: 60 degrees
@@ -56,10 +56,6 @@ def test_uniform_stress_is_in_balance_through_an_inclined_joint(kind, order, dou
     assert body.mass.sum() == pytest.approx(dim * DENSITY * 1.5 * 0.4 ** (dim - 1), rel=ROUND)
 
 
-BLOW = {
-    2: {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0]},
-    3: {"load__direction": [0.48, 0.6, -0.64], "load__at": [0.1, -0.05]},
-}
 LAW = {"friction_angle": 20.0, "cohesion": 1e4, "tension": False, "damping_ratio": 0.02}
 ACTING = {
     "joints": ROCK["joints"] | LAW,
@@ -73,7 +69,7 @@ ACTING = {
 def test_a_pillar_of_a_file_moves_as_the_built_one(kind, tmp_path, column):
     """With every joint sliding and opening, in other numbers of nodes."""
     dim = DIMENSION[kind]
-    keys = ROCK | ACTING | BLOW[dim] | {"numerics__continuum__order": 2}
+    keys = ROCK | ACTING | {"load": blow(dim), "numerics__continuum__order": 2}
     given = column(drawn(tmp_path / "pillar.msh", kind, doubled=True), **keys)
     many = {"elements_per_block": 2, "elements_across": 2}
     keys |= {f"numerics__continuum__{key}": value for key, value in many.items()}
@@ -137,24 +133,3 @@ def test_the_homogenised_bar_has_no_joints(given):
     assert body.joints is None
     modes = np.linalg.eigvalsh(body.stiffness.toarray())
     assert (modes < 1e-9 * modes.max()).sum() == 3
-
-
-def test_a_joint_may_end_inside_the_rock(tmp_path, column):
-    """Of four squares around (0, 0.75) the facet from there to the right side is tagged: only its
-    mouth is doubled; the tip is one node of all cells, and the side towards y = 0 the first."""
-    path = tmp_path / "notch.msh"
-    x = [(x, y) for y in (0.0, 0.75, 1.5) for x in (-0.2, 0.0, 0.2)]
-    squares = [[k, k + 1, k + 4, k + 3] for k in (1, 2, 4, 5)]
-    cells = [f"{k} 3 2 1 1 {' '.join(map(str, one))}" for k, one in enumerate(squares, 1)]
-    nodes = [f"{k} {one[0]} {one[1]} 0" for k, one in enumerate(x, 1)]
-    names = ["$PhysicalNames", "2", '2 1 "rock"', '1 2 "joint"', "$EndPhysicalNames"]
-    head = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", *names]
-    lines = [*head, "$Nodes", "9", *nodes, "$EndNodes"]
-    lines += ["$Elements", "5", *cells, "5 1 2 2 1 5 6", "$EndElements", ""]
-    path.write_text("\n".join(lines))
-    body = body_of(column(path, numerics__continuum__order=1, **ROCK), dim=2).body
-    assert len(body.x) == 10
-    for place, nodes in (((0.2, 0.75), 2), ((0.0, 0.75), 1)):
-        assert np.isclose(body.x, place).all(axis=1).sum() == nodes
-    assert body.joints.place == pytest.approx(np.array([[0.2, 0.75]]), rel=1e-15)
-    assert body.joints.frame[0, 0] == pytest.approx([0.0, 1.0], abs=1e-15)

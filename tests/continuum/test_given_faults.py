@@ -31,30 +31,17 @@ def test_missing_partners_are_counted_and_placed(tmp_path, column):
     assert "the first at (-0.1, 1) m" in str(error.value)
 
 
+QUADS, TRIANGLES = "quadrilateral", "triangle"
+PIECES = {"doubled": True, "names": ["joint", "seam"]}
+IN_SPACE, CUBIC = ({"changes": {f"numerics__continuum__{k}": 3}} for k in ("dim", "order"))
 MISTAKES = {
-    "too short": ("quadrilateral", dict(length=1.4), "spans y = 0 to 1.4 m, the pillar 0 to 1.5 m"),
-    "too wide": ("quadrilateral", dict(side=0.5), "spans x = -0.25 to 0.25 m, the pillar -0.2 to"),
-    "of second order": ("quadrilateral", dict(order=2), "has quad9 cells, must be first-order"),
-    "of a wrong dimension": (
-        "quadrilateral",
-        dict(changes=dict(numerics__continuum__dim=3)),
-        "quadrilateral cells.*dim = 3",
-    ),
-    "pieces that no group joins": (
-        "quadrilateral",
-        dict(doubled=True, names=["joint", "seam"]),
-        "4 facets coincide with others and are in no group 'joint",
-    ),
-    "saved without regard to groups": (
-        "quadrilateral",
-        dict(version=2.2, save_all=1),
-        "save it with Mesh.SaveAll = 0",
-    ),
-    "simplices of third order": (
-        "triangle",
-        dict(changes=dict(numerics__continuum__order=3)),
-        "triangle cells support numerics.continuum.order 1 or 2",
-    ),
+    "too short": (QUADS, {"length": 1.4}, "spans y = 0 to 1.4 m, the pillar 0 to 1.5 m"),
+    "too wide": (QUADS, {"side": 0.5}, "spans x = -0.25 to 0.25 m, the pillar -0.2 to"),
+    "of second order": (QUADS, {"order": 2}, "has quad9 cells, must be first-order"),
+    "of a wrong dimension": (QUADS, IN_SPACE, "quadrilateral cells.*dim = 3"),
+    "pieces apart": (QUADS, PIECES, "4 facets coincide with others and are in no group 'joint"),
+    "without groups": (QUADS, {"version": 2.2, "save_all": 1}, "save it with Mesh.SaveAll = 0"),
+    "of third order": (TRIANGLES, CUBIC, "support numerics.continuum.order 1 or 2"),
 }
 
 
@@ -95,24 +82,20 @@ $Elements
 $EndElements
 """
 
+UNREAD, AFTER = "cannot be read as a gmsh mesh", "2 3 2 1 1 3 4 6 5"
 FILES = {
-    "empty": ("", "", "cannot be read as a gmsh mesh"),
-    "no mesh": (GOOD, "a,b\n1,2\n", "cannot be read as a gmsh mesh"),
-    "cut short": (GOOD[GOOD.index("4 0.2 0.5") :], "", "cannot be read as a gmsh mesh"),
-    "a vertex of a number without end": (
-        "6 0.2 1.5 0",
-        "6000000000 0.2 1.5 0",
-        "cannot be read as a gmsh mesh, version 2.2 or 4.1: ",
-    ),
+    "no mesh": (GOOD, "a,b\n1,2\n", UNREAD),
+    "cut short": (GOOD[GOOD.index("4 0.2 0.5") :], "", UNREAD),
+    "a number without end": ("6 0.2 1.5 0", "6000000000 0.2 1.5 0", f"{UNREAD}, version 2.2 or"),
     "no rock": ('"rock"', '"stone"', "no group whose name starts with 'rock'"),
     "a rock of lines": ('2 1 "rock"', '1 2 "rock"', "line cells"),
     "no cell in the rock": ('2 1 "rock"', '2 7 "rock"', "has no cells"),
     "two kinds of cells": (
-        "2 3 2 1 1 3 4 6 5",
+        AFTER,
         "2 2 2 1 1 3 4 6",
-        "has quad and triangle cells, must be of one kind",
+        "quad and triangle cells, must be of one kind",
     ),
-    "cells outside the rock": ("2 3 2 1 1", "2 3 2 0 1", "1 of its cells are in no group"),
+    "cells outside the rock": (AFTER, "2 3 2 0 1 3 4 6 5", "1 of its cells are in no group"),
     "a joint without facets": ('1 2 "joint"', '1 5 "joint"', "group 'joint' has no facets"),
     "a joint inside a cell": ("2 2 1 3 4", "2 2 1 3 6", "belong to no rock cell"),
     "a joint on the outside": ("2 2 1 3 4", "2 2 1 3 1", "(-0.2, 0.25) m"),
@@ -140,18 +123,15 @@ def test_a_bad_file_is_one_line(old, new, words, tmp_path, column):
     assert len(message.splitlines()) == 1 and len(message) < len(str(tmp_path)) + 400
 
 
-def test_the_good_file_is_good(tmp_path, column, capfd):
-    body = read_text(GOOD, tmp_path, column)
-    assert (body.joints.column == 0).all() and len(body.x) == 2 * 9
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_cell_that_the_file_repeats_for_another_group_counts_once(tmp_path, column):
+def test_a_good_file_is_read_without_a_word(tmp_path, column, capfd):
+    """Cells that it repeats for another group count once."""
     again = "3 1 2 2 1 3 4\n4 3 2 9 1 3 4 6 5\n5 1 2 3 1 4 3\n"
-    text = GOOD.replace("3 1 2 2 1 3 4\n", again).replace("$Elements\n3", "$Elements\n5")
-    text = text.replace("$PhysicalNames\n2", '$PhysicalNames\n4\n2 9 "top"\n1 3 "joint too"')
-    body = read_text(text, tmp_path, column)
-    assert (body.joints.column == 0).all() and len(body.x) == 2 * 9
+    twice = GOOD.replace("3 1 2 2 1 3 4\n", again).replace("$Elements\n3", "$Elements\n5")
+    twice = twice.replace("$PhysicalNames\n2", '$PhysicalNames\n4\n2 9 "top"\n1 3 "joint too"')
+    for text in (GOOD, twice):
+        body = read_text(text, tmp_path, column)
+        assert (body.joints.column == 0).all() and len(body.x) == 2 * 9
+    assert capfd.readouterr() == ("", "")
 
 
 def test_a_file_that_is_not_there(tmp_path, column):

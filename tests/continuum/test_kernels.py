@@ -129,23 +129,3 @@ def test_absent_effects_leave_no_array(kernel):
     )  # fmt: skip
     arrays = [one.value if isinstance(one, tuple) else one for one in absent]
     assert [one.size for one in arrays] == [0] * len(arrays)
-
-
-IDLE = {
-    "cohesion that slip takes": {
-        "joints": {"cohesion": 1e12, "residual_cohesion": 0.0, "friction_angle": 0.0}
-    },
-    "tensile strength": {"joints": {"tensile_strength": 1e12, "fracture_energy": 1e18}},
-    "no prestress, no ledger": {"prestress": {"normal": 0.0}, "record": {"energy": False}},
-}
-
-
-@pytest.mark.parametrize("idle", IDLE.values(), ids=IDLE)
-def test_strength_that_nothing_reaches_changes_nothing(idle, short):
-    """An oblique and eccentric blow in the plane, which opens and shears the joints."""
-    blow = {"load__direction": [0.6, 0.8, 0.0], "load__at": [0.1, 0.0], "time__duration": 2e-3}
-    blow |= {"numerics__continuum__order": 1}
-    one, other = (simulate(short(**blow, **changes), dim=2) for changes in ({}, idle))
-    for quantity in ("stress", "shear", "velocity", "rotation"):
-        assert abs(one[quantity]).max() > 0
-        assert other[quantity].equals(one[quantity]), quantity

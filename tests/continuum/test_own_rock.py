@@ -72,13 +72,10 @@ def test_stress_of_layers_is_that_of_the_cell(rock_mass):
 def test_sections_of_pillars_are_of_the_scripts_rock(column, dim, cell):
     """The same rock gives the same force in every section; of rock twice as dense the force in the
     loaded end is still the load, which its momentum decides."""
-    numerics = {"cell": cell, "elements_per_block": 2, "scheme": "explicit"}
     scene = column(
-        **{f"numerics__continuum__{key}": value for key, value in numerics.items()},
-        joints__damping_ratio=None,
-        record__stress=[0.0, 0.3],
-        time__duration=2e-3,
-    )
+        numerics__continuum={"cell": cell, "elements_per_block": 2, "scheme": "explicit"},
+        joints__damping_ratio=None, record__stress=[0.0, 0.3], time__duration=2e-3,
+    )  # fmt: skip
     rock = scene.rock
     modulus, nu = rock.intact_modulus, rock.intact_poisson
 

@@ -1,11 +1,8 @@
-"""Uniform stress through joints, motions that strain nothing, and matrices that dolfinx assembles.
-Orders are those of waves through a joint, `plane/test_waves.py`, and of manufactured motions."""
+"""Uniform stress through joints, and motions that strain nothing.
+Orders of convergence are those of manufactured motions, `verification/test_manufactured.py`."""
 
-import dolfinx.fem.petsc
 import numpy as np
 import pytest
-import ufl
-from dolfinx import fem
 
 from tests.continuum.bodies import LAME, SHEAR, STIFFNESS, of_blocks, pushed, springs
 
@@ -91,23 +88,3 @@ def test_brickwork_carries_stress_across_its_beds(made):
     assert along.any() and found.blocks.count > 16
     assert np.abs(force).max() < 1e-12 * np.abs(body.stiffness).max() * np.abs(u).max()
     assert np.abs(jump[along]).max() < 1e-13 * np.abs(u).max()
-
-
-@pytest.mark.parametrize(("dim", "order"), [(2, 1), (2, 3), (3, 2)])
-def test_matrices_are_those_that_dolfinx_assembles(made, dim, order):
-    """The same forms, written by hand on the body's space; in boxes all rules are exact to the
-    order that they state."""
-    dip = {"dip": 0.0, "spacing": 2.0}
-    body = made(dip, dim=dim, continuum={"order": order, "size": 2.0}).body
-    u, v = ufl.TrialFunction(body.space), ufl.TestFunction(body.space)
-    rule = {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
-    strain = ufl.sym(ufl.grad(u))
-    stress = LAME * ufl.tr(strain) * ufl.Identity(dim) + 2 * SHEAR * strain
-    for form, own in (
-        (ufl.inner(stress, ufl.sym(ufl.grad(v))), body.stiffness.toarray()),
-        (2600.0 * ufl.inner(u, v), np.diag(body.mass)),
-    ):
-        found = dolfinx.fem.petsc.assemble_matrix(fem.form(form * ufl.dx(metadata=rule)))
-        found.assemble()
-        expected = found.convert("dense").getDenseArray().real
-        assert np.abs(own - expected).max() < 1e-13 * np.abs(expected).max()

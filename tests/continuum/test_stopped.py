@@ -18,13 +18,10 @@ def shaken(rock_mass, scheme):
     """Return a scene that slips, on a fixed base beside quiet sides, in rock that relaxes."""
     record = {"points": [[2.0, 3.0]], "joints": [[3.0, 2.0]], "interval": 2e-5, "fields": 1.6e-4}
     return rock_mass(
-        {"dip": 30.0, "through": [3.0, 2.0], "friction_angle": 30.0},
-        rock=ROCK,
+        {"dip": 30.0, "through": [3.0, 2.0], "friction_angle": 30.0}, rock=ROCK, loads=[PUSH],
+        boundaries={"bottom": "fixed", "left": "quiet", "right": "quiet"}, record=record,
         continuum={"steps_per_period": 50, "scheme": scheme},
-        loads=[PUSH],
-        boundaries={"bottom": "fixed", "left": "quiet", "right": "quiet"},
-        record=record,
-    )
+    )  # fmt: skip
 
 
 def damped(short, scheme):
@@ -56,9 +53,8 @@ def test_nothing_beyond_the_bounds_is_kept_where_no_ledger_is(rock_mass):
         return rock_mass(joint, continuum=continuum, loads=[PUSH], record=record, time=time)
 
     critical = plan_of(scene(1e-3, 10)).critical
-    with pytest.raises(
-        StoppedError, match=r"times the critical step .* to at most 0\.9"
-    ) as stopped:
+    said = r"diverged at t = .* s, step \d+ of .* times the critical step .* to at most 0\.9"
+    with pytest.raises(StoppedError, match=said) as stopped:
         simulate(scene(1.01 * critical, 4000))
     result = stopped.value.result
     assert result.attrs["steps"] == 4000 and 0 < result.sizes["time"] < 1000

@@ -102,8 +102,3 @@ def test_the_least_dimension_that_holds_the_motion_is_taken(short, changes, dim,
     scene = short(numerics__continuum__order=1, **changes)
     assert applies(scene, model) == ""
     assert plan_of(scene, model).problem.body.x.shape[1] == dim
-
-
-def test_what_nothing_calls_for_is_no_obstacle(pillar):
-    """Friction, where nothing shears the joints."""
-    assert not any(applies(pillar(joints__friction_angle=30.0), model) for model in BOTH)

@@ -16,6 +16,7 @@ from jointwave.continuum.plan import plan_of
 from jointwave.continuum.space.model import forces_on
 from jointwave.continuum.stepping.static import settled
 from jointwave.continuum.stepping.tractions import SLIDE, history_at_rest
+from tests.continuum.drawing import crossed, grouped
 
 HOLE = Kirsch(radius=1.0, stress=(10e6, 4e6), modulus=5e10, poisson=0.25)
 HALF = 4.0  # m, of the domain's width
@@ -61,30 +62,10 @@ def rings(path, n):
         for line in rays:
             growth = (HALF / HOLE.radius) ** (0.5 / n)
             geo.mesh.setTransfiniteCurve(line, 2 * n + 1, "Progression", growth)
-        _written(gmsh, path)
-
-
-def crossed(path, dip, offset):
-    """Let gmsh mesh a square with a hole and a joint beside it by triangles."""
-    with gmsh_session() as gmsh:
-        gmsh.option.setNumber("Mesh.MeshSizeMax", SIZE)
-        occ, slope = gmsh.model.occ, np.tan(np.radians(dip))
-        square = [(2, occ.addRectangle(-HALF, -HALF, 0, 2 * HALF, 2 * HALF))]
-        square, _ = occ.cut(square, [(2, occ.addDisk(0, 0, 0, HOLE.radius, HOLE.radius))])
-        ends = [occ.addPoint(x, offset + slope * x, 0) for x in (-HALF, HALF)]
-        _, children = occ.fragment(square, [(1, occ.addLine(*ends))])
-        occ.synchronize()
-        line = gmsh.model.addPhysicalGroup(1, [tag for _, tag in children[-1]])
-        gmsh.model.setPhysicalName(1, line, "joint fault")
-        _written(gmsh, path)
-
-
-def _written(gmsh, path):
-    gmsh.model.geo.synchronize()
-    rock = gmsh.model.addPhysicalGroup(2, [tag for _, tag in gmsh.model.getEntities(2)])
-    gmsh.model.setPhysicalName(2, rock, "rock")
-    gmsh.model.mesh.generate(2)
-    gmsh.write(str(path))
+        geo.synchronize()
+        grouped(gmsh, 2, "rock", [tag for _, tag in gmsh.model.getEntities(2)])
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(path))
 
 
 def excavated(folder, text):
@@ -133,10 +114,11 @@ def test_a_joint_beside_a_tunnel_slips_where_coulombs_criterion_says(tmp_path):
     everywhere, and where it gives way first: where |t_s| > tan(phi) t_n. With 4 % less friction
     than the most that is called for, all points where it is called for slip, and hand on to one at
     either end what they no longer bear; with 4 % more nothing slips."""
-    crossed(tmp_path / "rock.msh", 30.0, 1.6)
     normal = np.array([-0.5, np.sqrt(0.75)])
     x = np.linspace(-HALF, HALF, 4001)
     line = np.stack([x, 1.6 + np.tan(np.pi / 6) * x], axis=1)
+    joints = {"joint fault": line[[0, -1]]}
+    crossed(tmp_path / "rock.msh", joints, -HALF, HALF, hole=(0.0, 0.0), size=SIZE)
 
     def called_for(places):
         tractions = HOLE.stress_at(places) @ normal

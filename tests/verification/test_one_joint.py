@@ -1,4 +1,5 @@
-"""A joint without tension that a Ricker wavelet opens, shuts in its middle, and opens again.
+"""One joint of deformable rock: without tension, which a Ricker wavelet opens, shuts in its middle
+and opens again; and one that slips under a harmonic shear wave.
 
 The half wavelet that is compressed arrives while the joint is shut; what came before has opened it.
 """
@@ -7,12 +8,14 @@ import numpy as np
 import pytest
 
 from closed_forms import opening_joint
-from jointwave import continuum
+from closed_forms.one_joint import slip_coefficients
+from jointwave import cases, continuum
 from jointwave.cases.loads import load_history
+from jointwave.compare.scenes import SHIPPED
 
-SPEED, Z, PERIOD = 2000.0, 2400.0 * 2000.0, 0.01
+SPEED, Z, WAVELET = 2000.0, 2400.0 * 2000.0, 0.01
 SIDES = 20.0 - 1e-6, 20.0 + 1e-6  # m, of the joint
-CLOSES = 1.5 * PERIOD + 20.0 / SPEED  # at the middle of the wavelet, whose impulse is zero there
+CLOSES = 1.5 * WAVELET + 20.0 / SPEED  # at the middle of the wavelet, whose impulse is zero there
 
 
 def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
@@ -26,7 +29,7 @@ def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
     scene = pillar(
         pillar={"length": 60.0, "side": 0.5, "block": 1.0},
         rock={"density": 2400.0, "equivalent_modulus": 9.6e9, "equivalent_poisson": 0.25},
-        load={"shape": "ricker", "amplitude": 1e6, "period": PERIOD},
+        load={"shape": "ricker", "amplitude": 1e6, "period": WAVELET},
         ends={"start": "quiet", "end": "quiet"},
         time__duration=0.06,
         soft_layers=[{"y": 20.0, "tension": False}],
@@ -56,3 +59,56 @@ def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
     assert np.abs(gap - exact).max() < 2 * 0.5e6 / (10 * 9.6e9)
     passes = opening_joint.transmitted(load, times - 30.0 / SPEED).sum() / 2
     assert stress[2].sum() == pytest.approx(passes, rel=0.01)
+
+
+SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"
+PERIOD, INTERVAL = 0.04, 1e-4
+#: One period of the four that are at the joint from 0.03125 to 0.19125 s.
+CYCLE = slice(1501, 1901)
+SHARES = {
+    0.5: (0.6253, 0.4159, 0.6603),
+    0.1: (0.1384, 0.8746, 0.4647),
+    0.02: (0.0282, 0.9746, 0.2221),
+}
+
+
+def simulate(strength):
+    """Return the shear stress at the joint (Pa) and the work of friction (J)."""
+    changes = {
+        "soft_layers": [{"y": 25.0, "cohesion": strength, "friction_angle": 0.0}],
+        "record.stress": [25.0],
+        "record.interval": INTERVAL,
+        "variants": [],
+        "expect": {},
+    }
+    scene = cases.load_variant(SCENE, "", changes)
+    result = continuum.simulate(scene, "equivalent", dim=1)
+    return result.shear.values[0, :, 0], result.energy.sel(term="friction").values
+
+
+@pytest.fixture(scope="module")
+def holds():
+    """The stress at a joint that holds."""
+    return simulate(1e9)[0]
+
+
+@pytest.mark.parametrize("a", SHARES)
+def test_harmonic_wave(holds, a):
+    """T, R and A of Miller (1978) within 0.2 %: 128 quadratic elements and more a wavelength, 25 of
+    the fifth harmonic.
+
+    The reflected wave is what slip changes at the joint; A^2 is the share of the incident energy
+    that friction takes in a cycle.
+    """
+    incident = holds
+    shear, friction = simulate(a * 1e5)
+    whole = np.mean(incident[CYCLE] ** 2)
+    T = np.sqrt(np.mean(shear[CYCLE] ** 2) / whole)
+    R = np.sqrt(np.mean((shear - incident)[CYCLE] ** 2) / whole)
+    z, area = 2400.0 * 800.0, 0.25
+    taken = friction[CYCLE.stop - 1] - friction[CYCLE.start - 1]
+    A = np.sqrt(taken / (whole * PERIOD * area / z))
+    exact = slip_coefficients(a)
+    assert exact == pytest.approx(SHARES[a], abs=1e-4)
+    assert pytest.approx(exact, rel=2e-3) == (T, R, A)
+    assert np.abs(shear).max() <= a * 1e5 * (1 + 1e-9)
