@@ -7,7 +7,6 @@ from scipy.sparse import csr_matrix, diags
 
 from jointwave.cases.read import load_tables
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import Body
 
 STIFFNESS = 2e10, 8e9  # of joints along the normal and in shear, Pa/m
@@ -59,8 +58,3 @@ def pushed(body: Body, stress: np.ndarray) -> np.ndarray:
     for side in body.sides.values():
         np.add.at(force, side.node, side.weight[:, None] * (side.normal @ stress))
     return force.ravel()
-
-
-def of_blocks(body: Body, motion: np.ndarray) -> np.ndarray:
-    """Return the displacement of nodes [nodes, d] of motions of their blocks [blocks, d]."""
-    return motion[blocks_of_nodes(body)]

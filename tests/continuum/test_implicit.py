@@ -14,17 +14,18 @@ from jointwave.continuum.stepping.problem import Held
 from tests.continuum.bodies import PUSH
 from tests.continuum.stacked import Force, joined, problem, stack
 
+STEP = 0.2
+
 
 def pushed(dim, dt, eta=None, held=False):
-    """Return three boxes, and joints between them, under noise on top of them."""
+    """Return three boxes, and joints between them, under noise on top of them, linear in STEP."""
     body = stack(dim, 3, 2, 1)
     if eta is not None:
         body = body._replace(damping=eta * body.stiffness)
     top, below = (body.sides[name].node for name in ("top", "bottom"))
     noise = np.random.default_rng(1).standard_normal(1000)
-    push = Force(
-        dim * top, body.sides["top"].weight, lambda t: noise[np.rint(t / dt).astype(int)], dt
-    )
+    every = STEP * np.arange(1000)
+    push = Force(dim * top, body.sides["top"].weight, lambda t: np.interp(t, every, noise), dt)
     fixed = (dim * below[:, None] + np.arange(dim)).ravel()
     stays = Held(fixed, np.zeros(fixed.size)) if held else None
     return problem(body, joined(2, dim > 1, eta), top[:1], forces=push, held=stays)
@@ -34,9 +35,8 @@ def pushed(dim, dt, eta=None, held=False):
 @pytest.mark.parametrize(("dim", "eta", "held"), [(1, None, False), (2, 0.1, True)])
 def test_a_linear_run_is_the_exact_discrete_response(dim, eta, held, rho):
     """Every mode under a load of noise, a hundred steps; dashpots in proportion to springs."""
-    dt = 0.2
-    own = pushed(dim, dt, eta, held)
-    steps = Implicit(own, dt, 1, rho)
+    own = pushed(dim, STEP, eta, held)
+    steps = Implicit(own, STEP, 1, rho)
     steps.take(0, 101, 1000)
     free, body = steps.balance.free, own.body
     square, shapes = eigh(own.stiffness[free][:, free].toarray(), np.diag(body.mass[free]))
@@ -44,7 +44,7 @@ def test_a_linear_run_is_the_exact_discrete_response(dim, eta, held, rho):
     full, load = np.zeros((body.mass.size, free.size)), np.zeros((body.mass.size, 101))
     full[free] = shapes
     np.add.at(load, own.forces.freedom, own.forces.at(0, 101).T)
-    motion = theory.response(scheme(rho), omega, full.T @ load, dt, (eta or 0.0) * omega / 2)
+    motion = theory.response(scheme(rho), omega, full.T @ load, STEP, (eta or 0.0) * omega / 2)
     for found, expected in zip((steps.now.u, steps.now.v, steps.now.a), motion, strict=True):
         assert relative_l2(found, full @ expected[:, -1]) < 1e-9
 
@@ -100,26 +100,11 @@ class InHalves(Implicit):
         return end - begin < 1 and super()._step(n, begin, end)
 
 
-class Linear:
-    """A load that is linear within the steps of another, each cut into `share`."""
-
-    def __init__(self, load, share):
-        self.load, self.share, self.freedom = load, share, load.freedom
-
-    def at(self, first, last):
-        n = np.arange(first, last) / self.share
-        low = np.floor(n).astype(int)
-        given = self.load.at(0, low[-1] + 2)
-        return given[low] + (n - low)[:, None] * (given[low + 1] - given[low])
-
-
 def test_a_run_in_halves_is_one_of_half_the_step():
-    """Under the same load, to round-off."""
+    """Under the same load, linear within the whole steps, to round-off."""
     runs = []
     for kind, share in ((InHalves, 1), (Implicit, 2)):
-        own = pushed(2, 0.2, 0.1, True)
-        own = own._replace(forces=Linear(own.forces, share))
-        steps = kind(own, 0.2 / share, 31, 0.8)
+        steps = kind(pushed(2, STEP / share, 0.1, True), STEP / share, 31, 0.8)
         steps.take(0, 30 * share + 1, share)
         runs.append(steps)
     halved, fine = runs
