@@ -38,7 +38,8 @@ JOINTS = {
         "ends": {"start": "free", "end": "fixed"},
         "gravity": {"direction": [0, 1, 0], "static": False},
     },
-    "softening, prestress": {
+    "softening beside a bar of steel, prestress": {
+        "segments": [{"y": [1.0, 2.0], "joints": False, **STEEL}],
         "joints": {"tensile_strength": 3e4, "fracture_energy": 0.3},
         "prestress": {"normal": 1e4},
     },
@@ -48,7 +49,6 @@ JOINTS = {
         "ends": {"start": "fixed", "end": "matched"},
         "damping__mass_proportional": 50.0,
     },
-    "a bar of steel": {"segments": [{"y": [0.0, 1.0], "joints": False, **STEEL}]},
 }
 
 
