@@ -112,6 +112,9 @@ def test_one_table_is_the_same_numbers_in_every_dialect_and_by_both_ways(
     np.testing.assert_array_max_ulp(load.stress, VALUES, 2)
 
 
+SAMPLES = [0.0, 3.0, -1.5, 0.25, 0.0]
+
+
 def write_sac(path, samples, interval=0.025, **header):
     """Write a SAC file, with words of its header (delta, b, e) put in place of its own."""
     trace = obspy.Trace(np.asarray(samples, dtype=np.float32))
@@ -133,20 +136,22 @@ def test_the_rate_in_place_of_the_interval_is_refused(tmp_path, pillar_with):
     assert "E = 99.975 s" in why and "0.025 s; DELTA looks like the rate in Hz" in why
 
 
-@pytest.mark.parametrize("header", [{}, {"b": -12345.0}, {"b": 3.0, "e": 3.0 + 4 * 0.025}])
-def test_a_sac_file_that_agrees_with_itself_is_read(header, tmp_path):
-    path = write_sac(tmp_path / "a", [0.0, 3.0, -1.5, 0.25, 0.0], **header)
-    load, timed = read_history(tmp_path, path.name, "stress")
-    assert timed and load.time == pytest.approx(0.025 * np.arange(5), rel=1e-6)
-    assert load.stress.tolist() == [0.0, 3.0, -1.5, 0.25, 0.0]
-
-
-def test_samples_of_an_ultrasonic_record_are_not_at_one_time(tmp_path):
-    """ObsPy rounds intervals of SAC to a microsecond: 0.1 us to zero, 3.2 us to 3."""
-    for interval in (1e-7, 3.2e-6):
-        write_sac(tmp_path / "a", np.zeros(5), interval)
-        time = read_history(tmp_path, "a", "stress")[0].time
-        assert time == pytest.approx(interval * np.arange(5), rel=1e-6)
+@pytest.mark.parametrize(
+    ("interval", "header"),
+    [
+        (0.025, {}),
+        (0.025, {"b": -12345.0}),
+        (0.025, {"b": 3.0, "e": 3.0 + 4 * 0.025}),
+        (1e-7, {}),
+        (3.2e-6, {}),
+    ],
+)
+def test_a_sac_file_that_agrees_with_itself_is_read(interval, header, tmp_path):
+    """Also of an ultrasonic record: ObsPy rounds to a microsecond, 0.1 us to zero, 3.2 us to 3."""
+    write_sac(tmp_path / "a", SAMPLES, interval, **header)
+    load, timed = read_history(tmp_path, "a", "stress")
+    assert timed and load.time == pytest.approx(interval * np.arange(5), rel=1e-6)
+    assert load.stress.tolist() == SAMPLES
 
 
 def traces(*data, rate=500.0, later=10.0, **stats):
@@ -162,17 +167,16 @@ def traces(*data, rate=500.0, later=10.0, **stats):
 @pytest.mark.parametrize("form", ["SAC", "MSEED"])
 def test_a_trace_is_a_load_and_a_curve_by_its_content(form, tmp_path, pillar_with):
     """Whatever the file is called; also counts."""
-    samples = np.array([0.0, 3.0, -1.5, 0.25, 0.0])
-    traces(samples).write(str(tmp_path / "trace.csv"), format=form)
+    traces(SAMPLES).write(str(tmp_path / "trace.csv"), format=form)
     load = pillar_with(tmp_path / "trace.csv").load.history
     (curve,) = read_curves(
         [f"{tmp_path / 'trace.csv'}:stress@20 [kPa]"], [pillar_with(tmp_path / "trace.csv")]
     )
     np.testing.assert_array_equal(curve.time, load.time)
     assert load.time == pytest.approx(np.arange(5) / 500.0, rel=1e-6)
-    assert load.stress.tolist() == samples.tolist()
+    assert load.stress.tolist() == SAMPLES
     ((values),) = curve.waveforms.values()
-    assert values.tolist() == (1e3 * samples).tolist()
+    assert values.tolist() == [1e3 * x for x in SAMPLES]
 
 
 def test_channels_of_a_seismogram_are_chosen_by_name(tmp_path, pillar):

@@ -25,7 +25,7 @@ RUNS = {
     "weakening and dilation under weight": (WEAKENS, DILATES, {"prestress": None, "gravity": {}}),
     "rate and state on a quiet base": (AGES, AGES, SHAKEN | {"boundaries": {"bottom": "quiet"}}),
     "softening and closure, shaken": (BREAKS, CLOSES, SHAKEN | {"prestress": None}),
-    "sudden gravity": (SLIPS, SLIPS, {"prestress": None, "gravity": {"static": False}}),
+    "sudden gravity": (WEAKENS, DILATES, {"prestress": None, "gravity": {"static": False}}),
 }
 
 

@@ -11,6 +11,9 @@ import json
 import pytest
 
 import jointwave as jw
+from jointwave.compare.misfit.pairs import meaning, measure
+from jointwave.compare.misfit.ranking import applicable, kind_of, own_exact
+from jointwave.compare.solvers.record import Kind
 from tests.field_cases.scenes import mass
 
 E, RHO, NU = 5.0e7, 1890.0, 0.3
@@ -70,3 +73,20 @@ def test_explain_prints_the_speeds_of_a_rock_mass(jointwave, tmp_path, in_toml):
         name = f"long waves along {axis}"
         assert rock[name] == pytest.approx([1080.12, 577.35], abs=0.01)
         assert found["dem"][name] == pytest.approx([1095.45, 577.35], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("dim", "own", "kind"), [(1, "equivalent-bar", Kind.NUMERICAL), (2, None, Kind.MODELLING)]
+)
+def test_a_bar_is_no_measure_of_the_own_error_of_rock_that_widens(column, dim, own, kind):
+    """Rock in two dimensions has lateral inertia where it turns, which a bar leaves out."""
+    changes = {"numerics.continuum.dim": dim, "motion.rotation": "small"}
+    scene = jw.load(column, changes=changes)
+    there = [name for name, answer in applicable(scene).items() if answer]
+    engine, bar = "continuum-equivalent", "equivalent-bar"
+    assert (own_exact(engine, there, scene) is None) == (own is None)
+    assert kind_of(engine, bar, scene) is kind
+    wave = jw.simulate(scene, bar)
+    rows = measure({engine: wave, bar: wave}, scene=scene)
+    assert {row.pair.kind for row in rows} == {kind.words}
+    assert meaning(rows[0].pair).startswith("another model; ") == (kind is Kind.MODELLING)
