@@ -40,7 +40,12 @@ MISTAKES = {
     "of second order": (QUADS, {"order": 2}, "has quad9 cells, must be first-order"),
     "of a wrong dimension": (QUADS, IN_SPACE, "quadrilateral cells.*dim = 3"),
     "pieces apart": (QUADS, PIECES, "4 facets coincide with others and are in no group 'joint"),
-    "without groups": (QUADS, {"version": 2.2, "save_all": 1}, "save it with Mesh.SaveAll = 0"),
+    "saved whole, 2.2": (QUADS, {"version": 2.2, "save_all": 1}, "save it with Mesh.SaveAll = 0"),
+    "saved whole, 4.1": (
+        QUADS,
+        {"save_all": 1},
+        "cells in no group; save it with Mesh.SaveAll = 0",
+    ),
     "of third order": (TRIANGLES, CUBIC, "support numerics.continuum.order 1 or 2"),
 }
 
