@@ -83,12 +83,6 @@ def result(attrs=None, errors=None, **fields):
 WAVE = pulse()[None] * np.ones((2, 1))
 
 
-def test_a_state_at_rest_under_gravity_is_that_of_the_first_sample():
-    held = {"starts": "at rest under gravity"}
-    one, other = (result(held, stress=rest + (1 + off) * WAVE) for rest, off in ((3, 0.02), (5, 0)))
-    assert misfit(one, other) == pytest.approx(0.02)
-
-
 def test_motion_where_there_should_be_none_is_not_passed_over():
     still = result(stress=0 * WAVE)
     assert misfit(result(stress=WAVE), still) == np.inf

@@ -8,7 +8,7 @@ from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.misfit.metrics import pairings, rms, worst
 from jointwave.compare.misfit.pairs import measure
-from jointwave.compare.misfit.places import Place, parsed, places_of, waveforms
+from jointwave.compare.misfit.places import Place, parsed, places_of
 from jointwave.results.rock_mass import rock_mass_dataset
 
 JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
@@ -19,11 +19,6 @@ TABLES = {
     "joint_sets": [{"name": "joint", "dip": 0.0, "through": [20.0, 20.0], **JOINT}],
     "time": {"duration": 0.01},
     "record": {"points": [[20.0, 10.0], [20.0, 30.0]], "joints": [[20.0, 20.0]], "interval": 1e-4},
-}
-SPACE = TABLES | {
-    "domain": {"size": [40.0, 40.0, 40.0]},
-    "joint_sets": [{"name": "bed", "dip": 0.0, "dip_direction": 0.0, "spacing": 5.0, **JOINT}],
-    "record": {"points": [[2.0, 1.0, 3.0], [20.0, 30.0, 4.5]], "joints": [[2.0, 2.0, 5.0]]},
 }
 TIME = 1e-4 * np.arange(101)
 WAVE = np.sin(2e3 * TIME)
@@ -156,12 +151,3 @@ def test_columns_of_a_file_are_called_by_places(tmp_path, separator, quotes):
     np.testing.assert_allclose(velocity, 1e-3 * np.arange(4))
     traction = curves.waveforms[Place("traction", "n", (20.0, 20.0))]
     np.testing.assert_allclose(traction, 2e6 * np.arange(4))
-
-
-def test_places_in_space_have_three_coordinates():
-    mass, draw = load_tables(SPACE), np.random.default_rng(1).normal
-    values = {"stress": draw(size=(2, 101, 6)), "slip": draw(size=(1, 101, 2))}
-    found = waveforms(rock_mass_dataset(mass, "dem", TIME, values))
-    assert len(found) == 6 * 2 + 2 * 1
-    for place in found:
-        assert parsed(str(place)) == place and list(place.coordinates) == ["x", "y", "z"]

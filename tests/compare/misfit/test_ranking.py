@@ -1,16 +1,12 @@
 """The reference of each solution, on scenes whose finest physics is known by reasoning."""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-import jointwave
-from jointwave.compare.engines import ENGINES, names, solver
+from jointwave.compare.engines import ENGINES
 from jointwave.compare.misfit.ranking import (
     applicable,
     deciding,
     finest,
-    lacks,
     own_exact,
     reference_of,
 )
@@ -55,20 +51,3 @@ def test_an_engine_errs_against_the_exact_solution_of_its_own_model(pillar):
     expected |= {"continuum-equivalent": "images"}
     assert {name: own_exact(name, there, scene) for name in ENGINES} == expected
     assert own_exact("continuum-jointed", ["dem", "lattice"], scene) is None
-
-
-PILLAR = jointwave.load("guo-li-2002/fig-03", "")
-
-
-@settings(max_examples=25)
-@given(st.sets(st.sampled_from(names()), min_size=1), st.sampled_from(names()), st.randoms())
-def test_a_reference_is_finer_complete_and_the_same_in_any_order(there, name, shuffle):
-    order = sorted(there)
-    shuffle.shuffle(order)
-    if (found := reference_of(name, order, PILLAR)) is None:
-        return
-    one, other = solver(name), solver(found.name)
-    assert found.name != name and not lacks(found.name, PILLAR)
-    assert (other.rock, other.form) > (one.rock, one.form)
-    again = solver(reference_of(name, sorted(there), PILLAR).name)
-    assert (again.rock, again.form) == (other.rock, other.form)

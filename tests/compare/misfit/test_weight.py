@@ -68,16 +68,6 @@ def test_what_the_scene_does_not_excite_stands_nowhere(excited, listed):
     assert [p.place.component for p in found] == listed
 
 
-def test_at_a_free_surface_its_traction_decides_nothing():
-    """The surface is x = 0: xx and xy vanish there but for the elements' error, yy does not."""
-    one, other = (
-        points(stress=[[1.0, 0.3, 0.2], [xx, yy, xy]])
-        for xx, yy, xy in ((3e-3, 0.303, 2e-3), (4e-4, 0.3, 1e-4))
-    )
-    found = worst(one, other)
-    assert found.misfit == pytest.approx(0.01) and found.place.component == "yy"
-
-
 def test_a_receiver_without_motion_decides_nothing():
     """At a free end stress itself is zero: half a percent of the largest stays out, two are 2 %, in
     any unit."""

@@ -162,14 +162,6 @@ def test_what_waveforms_do_not_tell_apart_is_said(scene):
     assert load / density == pytest.approx(1.3e6 / 2400, rel=1e-6)
 
 
-def test_a_search_begins_near_the_edge_of_what_is_possible(scene):
-    """A P wave cannot be slower than 2 / sqrt(3) S waves, here 924 m/s."""
-    curves = heard(scene, values={"rock.p_speed": 2200.0})
-    start = changed(scene, {"rock.p_speed": 1000.0})
-    found = jointwave.fit(start, [curves], ["rock.p_speed"])
-    assert found.values.value["rock.p_speed"] == pytest.approx(2200.0, rel=1e-6)
-
-
 @pytest.fixture
 def column(pillar):
     return pillar(soft_layers=[{"y": 20.0, "spacing_stiffness": 4e8}])
@@ -212,17 +204,13 @@ def test_a_scene_without_rigid_blocks_asks_for_another_solver(mass_tables):
 
 FAULTS = [
     (["joints.stiffness"], "joints.stiffness: is not a key of a scene"),
-    (["soft_layers.spacing_stiffness"], "did you mean soft_layers.0.spacing_stiffness?"),
     (["spacing_stiffness"], "did you mean soft_layers.0.spacing_stiffness?"),
     (["ends.start"], "ends.start: must be a continuous number"),
-    (["joints.contact_points"], "must be a continuous number"),
-    (["time.duration"], "must be a continuous number"),
     (["joints.cohesion"], "give a start, --free joints.cohesion=START"),
     (["soft_layers.3.spacing_stiffness"], "is in a table that the scene has not"),
     ([LAYER, "--free", LAYER], "given only once"),
     ([f"{LAYER}=2:1:3"], "LOW first"),
     ([f"{LAYER}=1:2"], "must be KEY, KEY=START or KEY=LOW:START:HIGH"),
-    ([f"{LAYER}=soft"], "of numbers"),
     ([f"{RATIO}=-1"], "greater than or equal to 0"),
     ([LAYER, "--model", "images"], "images does not apply"),
     ([LAYER, "--engine", "exact"], "--model: must be one of"),
@@ -266,26 +254,6 @@ def test_command_fits_writes_and_says_how_to_go_on(asked, tmp_path, command):
     found = {e["key"]: e for e in facts["keys"]}
     for key, true in {**TRUE, "clock": -1e-3}.items():
         assert found[key]["low"] < true < found[key]["high"]
-    said = command(*asked, LOAD, "--set", "title=mine").out
-    assert "fitted by rigid blocks, exact" in said and re.search(r"load.amplitude +Pa ", said)
-    line = "".join(said.split())
+    line = "".join(command(*asked, LOAD, "--set", "title=mine").out.split())
     assert "compare:jointwavecompare" in line and "gauge.csv:t=time" in line
     assert "--settitle=mine--setload.amplitude=" in line
-
-
-def test_command_fits_a_history(mass_tables, tmp_path, command, in_toml):
-    time = np.linspace(0.0, 0.004, 41)
-    pulse = np.c_[time, 1e6 * np.sin(np.pi * time / 0.004) ** 2]
-    np.savetxt(tmp_path / "pulse.csv", pulse, "%.9g", ",")
-    wave = mass_tables["waves"][0] | {"shape": "table", "file": "pulse.csv", "amplitude": 1.0}
-    del wave["period"]
-    (tmp_path / "scene.toml").write_text(in_toml(mass_tables | {"waves": [wave]}))
-    scene = jointwave.load(tmp_path / "scene.toml")
-    curve = heard(scene, (ABOVE,), {AMPLITUDE: 1.3}, solver="oblique-joint")
-    columns = np.c_[1e3 * curve.time, 1e3 * curve.waveforms[ABOVE]]
-    header = 'time [ms],"velocity_y@[6,8] [mm/s]"'
-    np.savetxt(tmp_path / "gauge.csv", columns, "%.12g", ",", header=header, comments="")
-    asked = ("--with", "gauge.csv", "--free", AMPLITUDE, "--engine", "exact")
-    model = ("--model", "oblique-joint")
-    (estimate,) = json.loads(command("fit", "scene.toml", *asked, *model, "--json").out)["keys"]
-    assert estimate["value"] == pytest.approx(1.3, rel=1e-6)

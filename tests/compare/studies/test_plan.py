@@ -13,7 +13,6 @@ from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs import timings
 from jointwave.compare.scenes import find
-from jointwave.compare.studies import elements as candidates
 from jointwave.compare.studies import measure as references
 from jointwave.compare.studies import plan as plans
 from jointwave.compare.studies.elements import coarsest, configured, elements, halved, plain, rock
@@ -166,12 +165,10 @@ def test_a_rock_mass_is_planned_by_sizes_of_blocks_and_elements():
     assert off == pytest.approx(found.chosen.numerical - found.finest.error)
 
 
-BRICKS = {"domain.size": [8.0, 4.0], "record.points": [[2.5, 1.5]], "record.joints": []}
-
-
 def test_blocks_between_spaced_joints_have_a_model_of_their_own():
     """With its own blocks it is exact in time as a lattice; cut into smaller blocks it is not."""
-    changes = BRICKS | {"joint_sets.1.ends_at": [], "joint_sets.1.offset": 0.0}
+    changes = {"domain.size": [8.0, 4.0], "record.points": [[2.5, 1.5]], "record.joints": []}
+    changes |= {"joint_sets.1.ends_at": [], "joint_sets.1.offset": 0.0}
     scene = scene_of("rock-mass/brickwork", changes)
     lattice = solve("block-lattice", plain(scene))
     made = Plan(scene, 0.1, None, Reference("continuum-jointed", lattice, 0.0, "a run"), "")
@@ -179,18 +176,6 @@ def test_blocks_between_spaced_joints_have_a_model_of_their_own():
     assert own.name == "block-lattice" and modelling == 0
     cut, modelling = plans.own_model(made, elements(scene, "dem", {"block": 0.5}))
     assert cut.name == "dem" and modelling > 0.01
-
-
-def test_a_reference_of_small_blocks_has_elements_of_half_the_size_each(monkeypatch):
-    """Bricks of 2 m by 1 m have the same elements at the first sizes, parts of a wave of 16 m: such
-    runs would agree, and say nothing of their error."""
-    found = []
-    solved = lambda name, scene: found.append(solve(name, scene)) or found[-1]  # noqa: E731
-    monkeypatch.setattr(candidates, "solve", solved)
-    scene = scene_of("rock-mass/brickwork", BRICKS | {"time.duration": 0.02})
-    reference = plans._reference(scene, "continuum-jointed", {}, 20.0)
-    first, second = (one.attrs["degrees_of_freedom"] for one in found)
-    assert second > 2.5 * first and 0 < reference.error < 2
 
 
 def made_of(asked, *runs):

@@ -1,17 +1,15 @@
 """The store of experiments: each point computed once, on any executor, saved as soon as done."""
 
 import os
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
 from math import isnan, nan
-from multiprocessing import get_context
 
 import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare import studies
-from jointwave.compare.studies.store import Store, in_processes, key, on_executor
+from jointwave.compare.studies.store import Store, in_processes, key
 
 
 def square(number):
@@ -55,14 +53,6 @@ def test_points_are_computed_once_in_their_order(store, tmp_path, monkeypatch):
     assert Store(None, str).compute([2], square)[0]["square"] == 4.0 and saved(store) == [1, 3]
 
 
-def test_processes_and_executors_give_what_one_process_gives(tmp_path):
-    with ProcessPoolExecutor(2, get_context("spawn")) as executor:
-        for pool in (partial(in_processes, 2), partial(on_executor, executor)):
-            store = Store(tmp_path / str(id(pool)), str)
-            found = store.compute(range(5), square, pool)
-            assert [one["number"] for one in found] == saved(store) == list(range(5))
-
-
 def test_an_interrupted_experiment_has_saved_what_was_done(store):
     def until_two(number):
         if number == 2:
@@ -94,8 +84,7 @@ def test_a_damaged_file_is_one_line_that_names_it(store):
 
 
 def test_keys_tell_all_that_decides_a_point_apart(monkeypatch):
-    assert key("a", {"x": 1, "y": 2}) == key("a", {"y": 2, "x": 1})
-    assert len({key("a", 1), key("a", 2), key("b", 1), key("a", [1])}) == 4
+    assert key("a", {"x": 1, "y": 2}) == key("a", {"y": 2, "x": 1}) != key("a", {"x": 1, "y": 3})
     before = key("a")
     monkeypatch.setattr(studies.store, "program", lambda: "another")
     assert key("a") != before
