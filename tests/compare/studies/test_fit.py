@@ -162,6 +162,19 @@ def test_what_waveforms_do_not_tell_apart_is_said(scene):
     assert load / density == pytest.approx(1.3e6 / 2400, rel=1e-6)
 
 
+def test_the_amplitude_of_a_measured_history_is_found(mass_tables, tmp_path, in_toml):
+    time = np.linspace(0.0, 0.004, 41)
+    pulse = np.c_[time, 1e6 * np.sin(np.pi * time / 0.004) ** 2]
+    np.savetxt(tmp_path / "pulse.csv", pulse, "%.9g", ",")
+    wave = mass_tables["waves"][0] | {"shape": "table", "file": "pulse.csv", "amplitude": 1.0}
+    del wave["period"]
+    (tmp_path / "scene.toml").write_text(in_toml(mass_tables | {"waves": [wave]}))
+    scene = jointwave.load(tmp_path / "scene.toml")
+    curve = heard(scene, (ABOVE,), {AMPLITUDE: 1.3}, solver="oblique-joint")
+    found = jointwave.fit(scene, [curve], [AMPLITUDE], "oblique-joint")
+    assert found.values.value[AMPLITUDE] == pytest.approx(1.3, rel=1e-6)
+
+
 @pytest.fixture
 def column(pillar):
     return pillar(soft_layers=[{"y": 20.0, "spacing_stiffness": 4e8}])

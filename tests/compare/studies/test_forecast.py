@@ -9,8 +9,9 @@ import pytest
 from jointwave import cases
 from jointwave.cases.effects import effects
 from jointwave.cases.errors import SceneError
+from jointwave.cases.read import load_tables
 from jointwave.cases.size import LIMIT
-from jointwave.compare.engines import solve
+from jointwave.compare.engines import ENGINES, solve, solver
 from jointwave.compare.runs import timings
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import step_cost
@@ -26,24 +27,30 @@ def foretold(name, scene, *more, **about):
     return SimpleNamespace(**forecast(Run("", scene, name, *more, **about)))
 
 
-@pytest.mark.parametrize(
-    "engine, changes",
-    [
-        ("dem", {"numerics__dem__scheme": "fourth-order"}),
-        ("dem", SPACE),
-        ("continuum-equivalent", {}),
-        ("continuum-jointed", {"numerics__continuum__scheme": "implicit"}),
-        ("lattice", {}),
-    ],
-)
-def test_steps_and_size_are_those_of_the_run(pillar, engine, changes):
+IMPLICIT = {"numerics__continuum__scheme": "implicit"}
+PREPARED = [
+    *((name, kind, {}) for name in ENGINES for kind in ("pillar", "rock mass")),
+    ("dem", "pillar", SPACE),
+    ("dem", "pillar", {"numerics__dem__scheme": "fourth-order"}),
+    ("continuum-jointed", "pillar", IMPLICIT),
+]
+
+
+@pytest.mark.parametrize("name, kind, changes", PREPARED)
+def test_a_run_is_prepared_and_foretold_as_it_is_made(pillar, one_joint, name, kind, changes):
     scene = pillar(**SHORT, **changes)
-    found, made = foretold(engine, scene), solve(engine, scene).attrs
-    assert found.steps == made.get("steps", 0)
-    assert found.bytes > 0 and found.seconds > 0 and found.stepping is None
-    rock = f"{made.get('degrees_of_freedom', 0):,} freedoms"
-    assert found.size == {"dem": "100 blocks", "lattice": "-"}.get(engine, rock)
-    assert found.scheme == made.get("scheme", "exact")
+    if kind == "rock mass":
+        tables = one_joint(numerics={"dem": {"block": 4.0, "threads": 2}}, time={"duration": 2e-3})
+        tables["joint_sets"][0]["spacing"] = 5.0
+        scene = load_tables(tables)
+    found, made = solver(name).prepare(scene), solve(name, scene).attrs
+    keys = ("steps", "dt", "critical_dt", "degrees_of_freedom", "scheme")
+    prepared = found.steps, found.dt, found.critical, found.freedoms, found.scheme
+    assert prepared == tuple(made[key] for key in keys) and found.bytes > 0
+    settings = {"processes": 1} | dict(found.settings)  # their number is the command's
+    assert all(made[key] == settings[key] for key in solver(name).cost)
+    told = foretold(name, scene)
+    assert (told.steps, told.scheme) == (made["steps"], made["scheme"])
 
 
 @pytest.mark.parametrize(
@@ -53,7 +60,6 @@ def test_steps_and_size_are_those_of_the_run(pillar, engine, changes):
         ("dem", {"record__interval": 1e-8, "numerics__dem__step_fraction": 0.5}),
         ("dem", {"pillar__length": 10_000.0, **SPACE}),
         ("continuum-jointed", {"pillar__length": 5000.0}),
-        ("continuum-equivalent", {"record__interval": 1e-8}),
     ],
 )
 def test_memory_is_what_the_arrays_take_within_a_factor_of_three(pillar, engine, changes):

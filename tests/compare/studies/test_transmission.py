@@ -134,6 +134,13 @@ def test_the_study_writes_its_table_and_its_figure(monkeypatch, tmp_path):
     assert "at 30 degrees" in found.sentences[0]
 
 
+def test_a_brief_study_has_every_other_point():
+    for name, places in (("oblique-joint", {0, 30, 60}), ("parallel-joints", {2, 5})):
+        found, every = scattering.points(name, brief=True), scattering.points(name)
+        assert {p["angle" if name == "oblique-joint" else "joints"] for p in found} == places
+        assert all(one in every for one in found) and len(found) == 6 * len(places)
+
+
 def lines_of(name, rows):
     return {one.get_gid(): one for ax in draw(name, pd.DataFrame(rows)).axes for one in ax.lines}
 
