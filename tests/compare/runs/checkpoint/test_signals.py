@@ -41,7 +41,7 @@ def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
     (line,) = said(*arguments("axial", out, "--resume"))
     assert "continues at t = 0." in line
     refuse_difference(out / "dem.nc", undisturbed)
-    assert [path.name for path in out.iterdir()] == ["dem.nc"]
+    assert {p.name for p in out.iterdir()} == {p.name for p in undisturbed.parent.iterdir()}
 
 
 def test_processes_that_share_a_run_stop_together(
