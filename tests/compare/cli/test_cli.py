@@ -85,19 +85,6 @@ def test_explain_names_the_block_that_limits_the_step(pillar, facts):
     assert not explanation(pillar())["limits_the_step"]
 
 
-def test_explain_gives_the_critical_steps_of_motion_in_space(facts):
-    """Of the blocks, and of the rock in the three dimensions that the blow asks for."""
-    changes = ("pillar.length=4.0", "record.stress=[2.0]", "record.velocity=[]")
-    changes += ("numerics.continuum.elements_per_block=1",)
-    found = facts("explain", "beyond/eccentric-blow", *(p for c in changes for p in ("--set", c)))
-    steps = {step["engine"]: step for step in found["steps"]}
-    assert steps.keys() == {"dem", "continuum-equivalent"}
-    assert all(0 < step["dt"] < step["critical"] for step in steps.values())
-    assert found["effects"]["spatial motion"]["active"]
-    assert "intact_modulus" in found["solutions"]["continuum-jointed"]["why_not"]
-    assert found["solutions"]["spatial-lattice"]["applies"]
-
-
 def test_a_result_holds_what_was_warned_of(jointwave):
     """Each variant its own; a line that several say is printed once, on standard error."""
     late = ("--set", "load.period=0.03", "--set", "joints.damping_ratio=0.02", *SHORT)
@@ -109,11 +96,10 @@ def test_a_result_holds_what_was_warned_of(jointwave):
 
 def test_run_tells_what_broke(jointwave, facts):
     """How many joints broke and where the pieces fly, in words and as JSON."""
-    options = ("run", "beyond/spall", "--out", "out", "--variant")
-    (fact,) = facts(*options, "")
+    options = ("run", "beyond/spall", "--out", "out", "--variant", "")
+    (fact,) = facts(*options)
     count = len(fact["fragments"]) - 1
-    assert count > 2 and f"{count} joints broke" in jointwave(*options, "").out
-    assert "no joints broke" in jointwave(*options, "strong joints").out
+    assert count > 2 and f"{count} joints broke" in jointwave(*options).out
 
 
 def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave):
@@ -127,15 +113,6 @@ def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave):
     assert done.err.count("\n") == 1 and "critical" in done.err
     assert old.read_bytes() == before
     assert {path.name for path in Path("out").iterdir()} == {"dem.nc", "dem.stopped.nc"}
-
-
-def test_run_reports_how_still_a_static_state_is(facts):
-    """A pillar hangs within its tolerance; let go suddenly there is nothing to report."""
-    held = ("--set", "gravity.direction=[0,1,0]", "--set", 'ends.end="fixed"', *SHORT)
-    options = ("run", *BASE, "--out", "out", *held)
-    (hung,), (let_go,) = facts(*options), facts(*options, "--set", "gravity.static=false")
-    assert 0 <= hung["static_out_of_balance"] <= 1e-8
-    assert let_go["static_out_of_balance"] is None
 
 
 def test_compare_writes_figure_curves_and_distances(jointwave):

@@ -3,13 +3,11 @@
 import json
 import os
 import sys
-from math import isnan
 
 import pytest
 
 from jointwave.compare.cli import doctor
-from jointwave.compare.cli.doctor import PAIRS, PARTS, check, look
-from jointwave.compare.cli.terminal import show_facts
+from jointwave.compare.cli.doctor import PAIRS, PARTS, look
 
 BLOCKS, ROCK = PAIRS
 
@@ -82,17 +80,3 @@ def test_a_compiler_or_launcher_is_named_and_one_that_fails_too(tmp_path, monkey
     launcher.chmod(0o755)
     part = look("mpiexec")
     assert part["state"] == "broken" and "no slots (exit code 3)" in part["found"]
-
-
-def test_it_is_shown_in_words(capsys):
-    """Every part with its hint, and the verdict with its numbers or its reason."""
-    part = {"part": "dolfinx", "state": "broken", "found": "it broke", "hint": "apt install it"}
-    wrong = check(ROCK, part)
-    assert isnan(wrong["misfit"]) and not wrong["holds"]
-    right = {"pair": "a ~ b", "misfit": 1e-3, "bound": 2e-3, "reason": "", "holds": True}
-    show_facts({"parts": [part], "self_check": [right, wrong], "well": False})
-    said = capsys.readouterr().out
-    assert "it broke" in said and "apt install it" in said
-    lines = [" ".join(line.split()) for line in said.splitlines()]
-    assert "a ~ b 0.001 0.002 yes" in lines and "well: no" in lines
-    assert f"{ROCK} – 0.0003 dolfinx: it broke no" in lines

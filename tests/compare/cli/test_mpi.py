@@ -46,9 +46,7 @@ TINY = ("--set", "pillar.length=1.0", "--set", "record.stress=[0.5]")
 #: What all processes are asked, one command after the other; its exit code and words of its line.
 MISTAKES = {
     "a bad value": ((*RUN, "--set", "pillar.length=-1"), 2, "length = -1"),
-    "no scene": (("run", "no-such.toml"), 2, "no-such.toml"),
     "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare runs in one process"),
-    "an explanation": (("explain", *SCENE), 2, "mpiexec: jointwave explain runs in one process"),
     "a step above the critical": (
         (*RUN, *SHORT, "--set", f"{FRACTION}=1.5"),
         2,
@@ -98,10 +96,7 @@ def told(under_mpi, tmp_path_factory):
     folders["a folder that cannot be"] = place / "file" / "folder"
     asked = {name: arguments for name, (arguments, *_) in MISTAKES.items()}
     asked["blocks"] = (*BLOCKS, "--json")
-    commands = [
-        [*one, *(("--out", str(folders[name])) if one[0] != "explain" else ())]
-        for name, one in asked.items()
-    ]
+    commands = [[*one, "--out", str(folders[name])] for name, one in asked.items()]
     done = under_mpi("-c", IN_TURN, json.dumps(commands))
     *out, rest = re.split(r"^ended (\d+)\n", done.stdout, flags=re.MULTILINE)
     *errors, _ = re.split(r"^ended \d+\n", done.stderr, flags=re.MULTILINE)

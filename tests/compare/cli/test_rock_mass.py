@@ -162,6 +162,13 @@ def test_explain_counts_cuts_through_rock(says, explains):
     assert said.err.startswith("jointwave: mass.toml: domain: a block is not convex")
 
 
+def test_what_nothing_solves_says_why(says):
+    answers = {"one": Answer("the joints slip"), "other": Answer("it has two waves")}
+    said = r"joint\.toml: nothing solves it: one: the joints slip; other: it has two waves"
+    with pytest.raises(jw.SceneError, match=said):
+        solved(jw.load("joint.toml"), answers)
+
+
 def test_explain_counts_the_blocks_that_are_run(explains):
     """With half a block left at every quiet side there are five lines 8 m apart, the joint one of
     them, and four across it 10 m apart: 6 rows of 5 blocks."""
@@ -169,19 +176,3 @@ def test_explain_counts_the_blocks_that_are_run(explains):
     facts = explains(f"joint.toml {square}")
     assert (facts["blocks"], facts["rigid_blocks"]) == (2, 30)
     assert facts["area"] == pytest.approx(1600.0, rel=1e-12)
-
-
-def test_the_python_interface_reads_and_solves_it(says):
-    """What nothing solves says why."""
-    scene = jw.load("joint.toml")
-    assert scene.kind == "rock mass" and jw.solvers(scene)["oblique-joint"] == ""
-    found = jw.simulate(scene, "oblique-joint")
-    assert jw.misfit(found, found) == 0
-    assert [one.name for one in jw.load_variants("mass.toml")] == ["", "bonded", "shifted"]
-    with pytest.raises(jw.SceneError, match=r"jointwave\.properties accepts pillars only"):
-        jw.properties(scene)
-    answers = {"one": Answer("the joints slip"), "other": Answer("it has two waves")}
-    with pytest.raises(jw.SceneError) as error:
-        solved(scene, answers)
-    expected = "joint.toml: nothing solves it: one: the joints slip; other: it has two waves"
-    assert str(error.value) == expected

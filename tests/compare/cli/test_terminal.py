@@ -108,11 +108,6 @@ def test_colours_are_for_a_terminal_that_wants_them():
     assert "would fail" in done.stdout and "\x1b" not in done.stdout and done.stderr == ""
 
 
-def test_a_run_shows_its_progress_on_a_terminal(tmp_path):
-    run = [*COMMAND, "run", SCENE, "--set", "time.duration=0.01", "--out", tmp_path]
-    assert re.search(r"4 runs.*left", on_terminal(run))
-
-
 def test_a_table_that_is_too_wide_is_turned(capsys, monkeypatch):
     """Where it has few rows: its columns become rows, and nothing of it is wrapped."""
     monkeypatch.setattr(terminal, "PIPE", 30)

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from jointwave.compare.engines import solve
 from jointwave.compare.figures import scene_figures
@@ -65,37 +64,20 @@ def test_engines_stand_beside_each_other_and_their_errors_apart(pillar):
     assert picture.title == "Stress along the pillar over time, as it stands"
 
 
-def spatial(stress, shear, rotation):
-    """Return a result in space with these peaks, each of its own shape."""
-    time, y = np.linspace(0, 1, 5), np.arange(9.0)
-    wave = np.outer(y, np.sin(time))
-    return xr.Dataset(
-        {
-            "stress": (("stress_y", "time"), stress * wave),
-            "shear": (("stress_y", "time", "across"), np.multiply.outer(wave, [shear, 0])),
-            "rotation": (
-                ("velocity_y", "time", "axis"),
-                np.multiply.outer(wave, [0, rotation, 0]),
-            ),
-        },
-        {"time": time, "stress_y": y, "velocity_y": y, "across": [*"xz"], "axis": [*"xyz"]},
-        {"variant": ""},
-    )
-
-
 @pytest.mark.parametrize(
-    ("peaks", "words", "unit"),
+    ("changes", "words"),
     [
-        ((5e5, 1e5, 1e-3), "stress", "MPa"),
-        ((1e5, 5e5, 1e-3), "shear x", "MPa"),
-        ((0.0, 0.0, 1e-3), "rotation y", "mrad"),
+        ({"load__direction": [0.28, 0.96, 0.0]}, "stress"),
+        ({"load__direction": [0.96, 0.28, 0.0]}, "shear x"),
+        ({"load__arm": 0.2, "record__stress": [], "record__velocity": [5.25]}, "rotation y"),
     ],
 )
-def test_largest_force_is_drawn_else_what_turns(pillar, peaks, words, unit):
-    (shown,) = diagrams_of(pillar(), {"dem": spatial(*peaks)})
-    assert (shown.words, shown.diagrams[0].unit.name) == (words, unit)
-    assert shown.diagrams[0].values.any()
-    assert diagrams_of(pillar(), {"dem": spatial(0.0, 0.0, 0.0)}) == []  # nothing moves
+def test_largest_force_is_drawn_else_what_turns(pillar, changes, words):
+    keys = {"pillar__length": 10.0, "time__duration": 0.01, "record__stress": [5.0]} | changes
+    scene, still = pillar(**keys), pillar(**keys, load__amplitude=0.0)
+    (shown,) = diagrams_of(scene, {"dem": solve("spatial-lattice", recorded_along(scene))})
+    assert shown.words == words and shown.diagrams[0].values.any()
+    assert diagrams_of(still, {"dem": solve("spatial-lattice", recorded_along(still))}) == []
 
 
 def test_diagrams_hold_the_numbers_of_the_table(scene_with, ink):

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from jointwave.compare.report.report import build
-
 WIDE, NARROW = (1280, 800), (390, 844)
 TALL = (1280, 1400)  # every figure fits: for its picture the page is not laid out anew
 BOXES = ".scroll, .picture, pre, nav"  # may scroll: else it is clipped
@@ -184,23 +182,3 @@ def test_files_stand_beside_the_page_and_it_needs_no_script(report):
     inside = re.findall(r'href="#([^"]+)"', text)
     ids = re.findall(r'\bid="([^"]+)"', text)
     assert {*inside} <= {*ids} and len(ids) == len({*ids})
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
-def test_pages_of_many_receivers_and_variants_are_readable(
-    opened, once, own_scene, overlaps, printed, title, size
-):
-    names = [f"the same joints with dashpots of ratio {0.05 * i}" for i in range(1, 4)]
-    places = [2.5 * (i + 1) for i in range(8)]
-
-    def made(folder):
-        (own := folder / "own.toml").write_text(own_scene(names, stress=places))
-        return build(folder / "report", workers=1, scenes=[str(own)]).file
-
-    page = opened(size, once("page-8-4", made))
-    sides, said = printed(page)
-    assert sides < 35 and title.replace(" ", "") in said
-    unfold(page)
-    assert overlaps(page) == []
-    assert page.evaluate("document.documentElement.scrollWidth") == size[0]

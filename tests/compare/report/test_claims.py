@@ -121,12 +121,6 @@ def test_a_claim_holds_on_the_exact_chain_and_not_once_it_is_made_false(chains, 
     assert not found.holds, found.sentence
 
 
-def test_theory_gives_what_the_quiet_end_leaves(chains):
-    """tan(kh/4) of a harmonic is 5.8 % at the default period."""
-    found = travel.left_by_the_quiet_end(chains(5))
-    assert "reflects 5.8 % of a harmonic" in found.sentence
-
-
 def test_overview_gives_the_known_distances():
     """17.9 % from the homogenised bar, 4.0 % from the bar with 99 joints; not where these explain
     nothing."""

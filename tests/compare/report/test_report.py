@@ -65,25 +65,12 @@ def part(text, name):
     return found[: found.index("</section>")].replace("\u00a0", " ")
 
 
-def test_the_page_begins_with_a_picture_and_an_answer(report, browser, shows_picture_and_answer):
-    """At 1280 by 800; then a line a scene. The page is at most 25,000 pixels long without
-    the film, which takes 600."""
-    page = browser.new_page(viewport={"width": 1280, "height": 800})
-    page.goto(report.file.as_uri())
-    shows_picture_and_answer(page, 1280, 800)
-    box = page.locator("table.overview").bounding_box()
-    assert box["x"] + box["width"] <= 1280
-    rows = page.locator("table.overview tbody tr").all_inner_texts()
-    assert len(rows) == len(FIGURES) + 1 and all(row.count("×") == 3 for row in rows[:-1])
-    lead = page.locator("#overview ul.lead").inner_text().replace("\u00a0", " ")
-    assert "Rigid blocks are within 4.0 % of the exact jointed bar" in lead
-    assert "for the rock mass" in lead and "the time of the cheapest" in lead
-    assert page.evaluate("document.documentElement.scrollHeight") < 25_600
-    page.close()
-
-
-def test_sections_are_in_order_with_all_that_each_has_found(text):
-    """Ratios and the machine of other codes, every effect, the film's distances."""
+def test_sections_are_in_order_with_all_that_each_has_found(built, text):
+    """Ratios and the machine of other codes, every effect, the film's distances; progress ends
+    whole, and no half-written file is left."""
+    report, fractions = built
+    assert fractions == sorted(fractions) and fractions[-1] == 1
+    assert len(text.encode()) < 20e6 and not list(report.file.parent.rglob(".*"))
     found = re.findall(r'<section id="([^"]+)"', text)
     order = ["overview", *FIGURES, "rock-masses", "one-joint", "study-free-pillar", "peers"]
     assert [name for name in found if name in [*order, "effects"]] == [*order, "effects"]
@@ -149,30 +136,6 @@ def test_every_scene_has_every_kind_of_picture(figures, text, name):
         assert f"jointwave report guo-li-2002/{name} --out {name}" in part(text, name)
 
 
-def test_files_hold_the_load_itself_and_misfits_as_numbers(figures):
-    """At y = 0 the rigid blocks' stress is the load: 1 MPa times sin(2 pi t / 10 ms), 6 digits."""
-    table = pd.read_csv(figures / "fig-02-waveforms.csv")
-    (column,) = (c for c in table if c.startswith("dem | stress at y = 0 m"))
-    one = table[table["time (s)"] < 0.01]
-    sine = 1e6 * np.sin(2 * np.pi * one["time (s)"] / 0.01)
-    np.testing.assert_allclose(one[column], sine, atol=1.0)
-    table = pd.read_csv(figures / "fig-03-misfits.csv")
-    chosen = table[(table["pair"] == "dem ~ equivalent-bar") & (table["variant"] == "undamped")]
-    assert chosen["relative L2"].item() == pytest.approx(0.179, abs=5e-4)
-    assert set(table["kind"]) == {"numerical error", "modelling error", "between engines"}
-
-
-def test_page_asks_for_nothing(report, text):
-    """It is below 20 MB, asks for nothing, and every link of its own leads somewhere."""
-    assert len(text.encode()) < 20e6
-    assert not re.findall(r'\bsrc="(?!data:)|@import|url\(|<script', text)
-    for link in re.findall(r'href="([^"#][^"]*)"', text):
-        there = (report.file.parent / html.unescape(link)).is_file()
-        assert there or link.startswith("data:"), link
-    ids = re.findall(r'\bid="([^"]+)"', text)
-    assert len(ids) == len(set(ids)) and set(re.findall(r'href="#([^"]+)"', text)) <= set(ids)
-
-
 def test_the_pillar_in_motion_is_drawn_listed_and_opened_in_a_viewer(report, figures, text):
     assert "1350 m/s" in part(text, "motion")
     folder = report.file.parent / "fields"
@@ -187,16 +150,6 @@ def test_the_pillar_in_motion_is_drawn_listed_and_opened_in_a_viewer(report, fig
     assert table.abs().max().max() > 1e5 and table.notna().all().all()
 
 
-def test_report_leaves_no_half_written_files(report):
-    files = [path.name for path in report.file.parent.rglob("*") if path.is_file()]
-    drawn = [*REPORTED, "peers", "effects", "snapshots"]
-    kinds = ("svg", "pdf", "png", "csv")
-    assert {f"{name}.{kind}" for name in drawn for kind in kinds} <= set(files)
-    assert {f"{name}-misfits.csv" for name in FIGURES} <= set(files)
-    assert {f"{i:04d}.vtu" for i in range(8)} | {f"{name}.nc" for name in REPORTED} <= set(files)
-    assert not [name for name in files if name.startswith(".")]
-
-
 @pytest.mark.parametrize("name", REPORTED)
 def test_page_shows_what_each_study_found(name, text, report):
     """Its diagram, and every point of its table below the label of its curve."""
@@ -206,8 +159,3 @@ def test_page_shows_what_each_study_found(name, text, report):
     assert all(curve.label in body for curve in load(name).curves)
     points = pd.read_csv(report.file.parent / "studies" / f"{name}.csv")
     assert body.count("<tr>") == len(points)
-
-
-def test_progress_ends_whole(built):
-    _, fractions = built
-    assert fractions == sorted(fractions) and fractions[-1] == 1
