@@ -26,20 +26,6 @@ def solved(pillar):
     return solve_row
 
 
-@pytest.fixture
-def joint(one_joint):
-    """Return a function that solves rock with one joint of a dip (degrees), exactly."""
-
-    def solve_joint(dip, name="oblique-joint"):
-        record = {"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4}
-        tables = one_joint(domain={"size": [20.0, 20.0]}, time={"duration": 0.02}, record=record)
-        tables["joint_sets"][0] |= {"through": [10.0, 10.0], "dip": dip}
-        scene = load_tables(tables)
-        return Comparison(scene, {name: solve("oblique-joint", scene)})
-
-    return solve_joint
-
-
 @pytest.mark.parametrize(
     ("changes", "places"),
     [
@@ -61,15 +47,15 @@ def test_a_panel_shows_a_component_that_moves(solved, changes, places):
         np.testing.assert_array_equal(panel.curves["spatial-lattice"], values)
 
 
-@pytest.mark.parametrize(("dip", "moving"), [(30.0, ["x", "y", "n", "s"]), (0.0, ["y", "n"])])
-def test_nothing_moves_sideways_at_a_level_joint(joint, dip, moving):
+def test_nothing_moves_sideways_at_a_level_joint(one_joint):
     """The wave travels upwards."""
-    (row,) = panels([joint(dip)])
-    quantities = {"x": "velocity", "y": "velocity", "n": "traction", "s": "traction"}
-    places = {"velocity": "[10, 5]", "traction": "[10, 10]"}
-    assert [panel.place.heading for panel in row] == [
-        f"{quantities[way]} {way} at {places[quantities[way]]} m" for way in moving
-    ]
+    record = {"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4}
+    tables = one_joint(domain={"size": [20.0, 20.0]}, time={"duration": 0.02}, record=record)
+    tables["joint_sets"][0] |= {"through": [10.0, 10.0], "dip": 0.0}
+    scene = load_tables(tables)
+    (row,) = panels([Comparison(scene, {"oblique-joint": solve("oblique-joint", scene)})])
+    places = ["velocity y at [10, 5] m", "traction n at [10, 10] m"]
+    assert [panel.place.heading for panel in row] == places
 
 
 def test_variants_of_different_motion_share_a_figure_and_a_table(solved):
@@ -93,11 +79,10 @@ def test_variants_of_other_durations_share_one_table(solved):
     assert table.shape == (401, 3) and table.isna().sum().tolist() == [0, 200, 0]
 
 
-@pytest.mark.parametrize("normal", [1e5, 1e7])
-def test_what_moves_is_drawn_not_what_stands(solved, normal):
+def test_what_moves_is_drawn_not_what_stands(solved):
     """A shear wave under a prestress that is larger: the transmitted shear, in every panel."""
     shear = ACROSS | {"motion__rotation": "none"}
-    plain, found = (panels([solved(prestress__normal=n, **shear)])[0] for n in (0.0, normal))
+    plain, found = (panels([solved(prestress__normal=n, **shear)])[0] for n in (0.0, 1e7))
     for panel, other in zip(found, plain, strict=True):
         assert panel.place == other.place and panel.at_rest == 0
         curve, same = panel.curves.to_numpy(), other.curves.to_numpy()

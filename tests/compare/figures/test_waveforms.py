@@ -30,12 +30,6 @@ from jointwave.compare.misfit.ranking import finest
 SHIPPED = Path(cases.__file__).parent
 SHORT = {"time__duration": 0.03}
 DAMPED = {"joints__damping_ratio": 0.1}
-#: A soft layer, a damping ratio and an end: every exact solution that is used here has them.
-CHANGES = {
-    "joints.damping_ratio": DAMPED,
-    "ends.end": {"ends__end": "quiet"},
-    "soft_layers": {"soft_layers": [{"y": 20.0, "spacing_stiffness": 4.375e8}]},
-}
 
 
 @pytest.fixture
@@ -77,10 +71,8 @@ def test_variants_are_named_by_the_key_that_makes_them(name, key, words):
     assert words is None or variant_names(found) == words
 
 
-@pytest.mark.parametrize("key", CHANGES)
-def test_variants_of_one_key_share_a_pair_of_axes_an_engine(solved, collisions, key):
-    found = solved({}, CHANGES[key])
-    assert changed_key(found) == key
+def test_variants_of_one_key_share_a_pair_of_axes_an_engine(solved, collisions):
+    found = solved({}, DAMPED)
     ((dem, jointed, bar),) = by_variant(found)
     for overlay, engine in ((dem, "dem"), (jointed, "continuum-jointed")):
         waves = [t for t in overlay.traces if t.label != REFERENCE]
