@@ -127,6 +127,8 @@ def test_slip_is_the_jump_along_joints(sheared, collisions):
     slip = jw.simulate(recorded).slip.sel(time=0.015, method="nearest").values
     here = [distance(one.joints.mean(axis=1), place).argmin() for place in places]
     assert one.values[here] == pytest.approx(1e3 * np.abs(slip), rel=0.02)
+    twice = difference(one, one._replace(values=2 * one.values))
+    np.testing.assert_array_equal(twice.values, one.values)
     figure = jw.plot_map(blocks, "slip", time=0.015)
     assert collisions(figure) == []
     lines = shapes_of(figure, "rigid blocks", LineCollection)

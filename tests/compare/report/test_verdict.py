@@ -134,6 +134,12 @@ def test_every_component_at_a_receiver_has_a_column_of_its_own(pillar):
         f"velocity {axis} at 20 m (%)": pytest.approx(off)
         for axis, off in zip("xyz", (1, 2, 3), strict=True)
     }
+    places = 20.0 + np.arange(6)  # many columns are rows
+    many = {name: x.sel(velocity_y=[20.0] * 6) for name, x in results.items()}
+    many = {name: x.assign_coords(velocity_y=places) for name, x in many.items()}
+    table = misfit_table([Comparison(pillar(), many, {}, measure(many))])
+    assert len(table) == 18
+    assert table.loc["base scene, velocity y at 21 m"].item() == pytest.approx(2)
 
 
 def test_the_answer_names_the_worst_of_each_engine_and_the_verdict(compared, answer):
