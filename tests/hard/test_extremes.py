@@ -99,12 +99,15 @@ def test_what_cannot_be_computed_is_refused_in_a_line(changes, words):
 )
 def test_rock_that_no_wave_has_reached_has_no_influence(engine, scheme, length):
     """The first blocks of a million (of a hundred thousand that deform) move like those of a
-    thousand, bit for bit: explicit steps propagate by one block per step."""
+    thousand, bit for bit: explicit steps propagate by one block per step. Rock in one piece that
+    exceeds the cache adds each row in another order: by eps in each of 2,000 steps at most."""
     changes = {"time.duration": 0.01, "record.velocity": [], "step": 0.9}
     run = HardRun(engine, scheme, changes)
     long, short = (run.run(pillar__length=one) for one in (length, 500.0))
     assert long.attrs["dt"] == short.attrs["dt"]
-    assert np.array_equal(long["stress"].values, short["stress"].values)
+    off = np.abs(long["stress"].values - short["stress"].values).max()
+    largest = np.abs(short["stress"].values).max()
+    assert off <= (2000 * EPS * largest if engine == "continuum-equivalent" else 0.0)
 
 
 @pytest.mark.parametrize(("engine", "scheme"), marked(ROCK))
