@@ -42,7 +42,7 @@ def test_all_boundary_conditions_at_once_agree(referee, kind, count):
         found = coefficients(kind, angle, OMEGA, own, [Joint(*j) for j in joints], spacings)
         slowness = float(slowness_along(own, kind, angle))
         expected = referee(rock, joints, spacings).solve(kind, slowness, OMEGA)
-        np.testing.assert_allclose(found, expected, rtol=0, atol=2e-11)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11)
 
 
 @KINDS
