@@ -44,7 +44,8 @@ AT_REST = 1e6 * float(np.finfo(float).eps)
 
 
 def scene_hash(scene: AnyScene, text: str | None = None) -> str:
-    """Return a short hash of everything that determines a result, including samples of loads.
+    """Return a short hash of everything that determines a result, including samples of loads and
+    the file of a mesh or of blocks.
 
     text : the scene as JSON, where it is at hand.
     """
@@ -53,6 +54,9 @@ def scene_hash(scene: AnyScene, text: str | None = None) -> str:
         if pulse.history is not None:
             digest.update(pulse.history.time.tobytes())
             digest.update(pulse.history.stress.tobytes())
+    # An unreadable mesh is reported where it is used, with a message of its own.
+    if scene.mesh_path is not None and scene.mesh_path.is_file():
+        digest.update(scene.mesh_path.read_bytes())
     return digest.hexdigest()[:16]
 
 

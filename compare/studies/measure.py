@@ -123,8 +123,7 @@ def finest_of(study: Study) -> str | FineRun | None:
     None if the finest that applies is an engine and the study gives no fine run of it."""
     if study.finest is not None:
         return None if study.finest == NONE else study.finest
-    scene = study.changed({})
-    found = finest(able(scene), scene)
+    found = finest(able(study.base), study.base)
     return None if found is None or found.name in ENGINES else found.name
 
 

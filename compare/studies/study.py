@@ -135,6 +135,11 @@ class Study(StudyTable):
         changes = self.changes | changes | {"expect": {}}
         return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
+    @cached_property
+    def base(self) -> AnyScene:
+        """The scene itself; raises SceneError if it is invalid."""
+        return self.changed({})
+
     def points(self) -> list["StudyPoint"]:
         """Return all points, curve by curve."""
         return [

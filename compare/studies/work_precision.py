@@ -5,7 +5,7 @@ Colours are those of models.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from jointwave.cases.errors import SceneError
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.figures.export import blank, save
 from jointwave.compare.figures.style import style
 from jointwave.compare.runs.output import write_csv, write_dataset
@@ -26,6 +28,7 @@ from jointwave.compare.studies.measure import is_valid, measure, references
 from jointwave.compare.studies.store import Row, Store
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
+from jointwave.results.dataset import scene_hash
 
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
@@ -58,9 +61,18 @@ COLUMNS = {
 
 
 def key(point: StudyPoint) -> str:
-    """Return the key of a point: everything that determines its row."""
+    """Return the key of a point: everything that determines its row, the files of its scene too."""
     study = point.study.model_dump(mode="json", exclude={"title", "curves"})
-    return store_key(study, point.curve.model_dump(mode="json"), point.settings)
+    scenes = [_hash_of(lambda: point.study.base), _hash_of(lambda: point.scene)]
+    return store_key(study, point.curve.model_dump(mode="json"), point.settings, scenes)
+
+
+def _hash_of(scene: Callable[[], AnyScene]) -> str:
+    """Return the hash of a scene, or what is wrong with it."""
+    try:
+        return scene_hash(scene())
+    except SceneError as error:
+        return str(error)
 
 
 def experiment(study: Study, folder: Path) -> Experiment:

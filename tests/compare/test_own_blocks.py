@@ -1,5 +1,6 @@
 """Scenes of blocks from a file."""
 
+import json
 from itertools import pairwise
 
 import numpy as np
@@ -89,6 +90,17 @@ def test_a_window_is_an_opening(scene):
     (window,) = found.domain.holes
     assert np.array(window).min(axis=0).tolist() == [1.5, 0.5]
     assert np.array(window).max(axis=0).tolist() == [2.5, 1.0]
+
+
+def test_a_sweep_runs_anew_where_the_blocks_have_changed(scene, tmp_path, jointwave):
+    """The file of the scene has not."""
+    swept = ("run", tmp_path / "scene.toml", "--sweep", "waves.0.amplitude=1e6,2e6", "--workers", 1)
+    found = []
+    for windows in ((), [(1, 2)], [(1, 2)]):
+        scene(blocks=wall(windows))
+        said = jointwave(*swept, "--out", tmp_path / "out", "--json").out
+        found.append([row["peak"] for row in json.loads(said)["rows"]])
+    assert found[0] != found[1] == found[2]
 
 
 but = SCENE.replace

@@ -56,14 +56,8 @@ def program() -> str:
 
 
 def _scene(scene: AnyScene, name: str) -> str:
-    """Return a hash of what decides a solver's result of a scene, with the warnings that it bears
-    and its mesh file; the numerics of another engine do not, nor the bounds of [expect]."""
+    """Return a hash of what decides a solver's result of a scene, with the warnings that it bears;
+    the numerics of another engine do not, nor the bounds of [expect]."""
     left_out: dict[str, Any] = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
     text = scene.model_dump_json(exclude=left_out)
-    found = scene_hash(scene, text + json.dumps(warnings(scene)))
-    mesh = scene.mesh_path
-    # An unreadable mesh is reported where it is used, with a message of its own.
-    if mesh is None or not Path(mesh).is_file():
-        return found
-    with Path(mesh).open("rb") as file:
-        return f"{found} {hashlib.file_digest(file, 'sha256').hexdigest()[:16]}"
+    return scene_hash(scene, text + json.dumps(warnings(scene)))

@@ -86,6 +86,23 @@ def test_command_writes_what_it_prints_and_two_ranks_the_same(command, tmp_path,
     assert one == two
 
 
+def test_a_point_is_measured_anew_where_its_scene_has_changed(study, pillar, tmp_path, in_toml):
+    """The file that a study names, also in a key that all of its points set: the reference has it
+    as the file says."""
+    file, found = tmp_path / "mine.toml", []
+    curve = {"label": "stronger", "method": "dem", "changes": {"load.amplitude": 2e6}}
+    one = study([curve], scene=str(file), finest="lattice")
+    for amplitude in (1e6, 1e6, 1.6e6):
+        load = {"load": {"shape": "sine", "period": 0.01, "amplitude": amplitude}}
+        tables = pillar().model_dump(exclude_none=True, include={"title", "pillar", "rock", "time"})
+        file.write_text(in_toml(tables | load | {"record": {"stress": [2.0]}}))
+        again = one.model_copy(update={"changes": {"pillar.length": 5.0, "time.duration": 0.01}})
+        (row,) = experiment(again, tmp_path / "points").rows()
+        found.append(row["modelling"])
+    assert found == pytest.approx([1.0, 1.0, 0.25], rel=1e-9)
+    assert len(list((tmp_path / "points").iterdir())) == 2
+
+
 def test_every_point_is_drawn_where_it_was_measured(study, tmp_path):
     timed = study(timed=True, repeats=1, finest="jointed-bar")
     table = judged(experiment(timed, tmp_path).rows())
