@@ -31,7 +31,7 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
         every = ", ".join(model for of in known.values() for model in of if model)
         allowed = f"must be a model of a selected --engine: {every}"
         raise SceneError("--model", left[0], None, allowed)
-    return found
+    return list(dict.fromkeys(found))
 
 
 def engine_of(model: str) -> str:

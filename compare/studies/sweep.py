@@ -33,6 +33,7 @@ from jointwave.compare.studies.sweep_keys import Case
 from jointwave.compare.studies.sweep_table import summarise
 from jointwave.results.dataset import scene_hash
 from jointwave.results.netcdf import load_netcdf
+from jointwave.results.stress import tensors
 
 PEAKS = ("stress", "velocity", "traction")
 Rows = list[dict[str, Any]]
@@ -108,17 +109,24 @@ def run_scene(
 
 
 def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield the value of largest magnitude at each receiver, with its sign and time (SI).
-
-    For several components the norm, without sign: the speed for a velocity in space.
-    """
+    """Yield the value of largest magnitude at each receiver, with its sign and time (SI)."""
     for quantity in (name for name in PEAKS if name in result):
         for at, wave in zip(places_of(result, quantity)[0], result[quantity].values, strict=True):
-            several = wave.ndim > 1 and wave.shape[1] > 1
-            values = np.linalg.norm(wave, axis=1) if several else wave.ravel()
+            values = _in_one(quantity, wave)
             k = int(np.argmax(np.abs(values)))
             peak = {"peak": float(values[k]), "time_of_peak": float(result.time[k])}
             yield {"quantity": quantity, **Place(quantity, "", at).coordinates, **peak}
+
+
+def _in_one(quantity: str, wave: np.ndarray) -> np.ndarray:
+    """Return the only component [n], the length of a vector, or the principal stress of larger
+    magnitude in a rock mass."""
+    if wave.ndim == 1 or wave.shape[1] == 1:
+        return wave.ravel()
+    if quantity != "stress":
+        return np.linalg.norm(wave, axis=1)
+    least, *_, most = np.linalg.eigvalsh(tensors(wave)).T
+    return np.where(np.abs(least) > np.abs(most), least, most)
 
 
 def compare_scene(

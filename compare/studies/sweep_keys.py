@@ -1,8 +1,8 @@
 """The points of sweeps and ensembles: a scene at every value of some keys.
 
 Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`. Members 1,
-2, ... of an ensemble have the seed of the scene's joints, the next one, ...; in a rock mass those
-of each joint set.
+2, ... of an ensemble have the seed of the joints of each variant, the next one, ...; in a rock mass
+those of each joint set.
 """
 
 from __future__ import annotations
@@ -72,7 +72,9 @@ def cases_of(
         setting = dict(zip(values, combination, strict=True))
         folder = None if out is None else out / _folder(setting, i)
         try:
-            scenes = _scenes(path, variant, {**fixed, **setting})
+            keys = {**fixed, **setting}
+            number = keys.pop(MEMBER) if members else 0
+            scenes = _scenes(path, variant, keys, number)
         except SceneError as error:
             errors.append(error)
             found.append(Case(setting, folder, None, str(error)))
@@ -83,10 +85,18 @@ def cases_of(
     return found
 
 
-def _scenes(path: Path, variant: str | None, changes: dict[str, Any]) -> list[AnyScene]:
-    if (number := changes.pop(MEMBER, 0)) > 0:
-        changes |= _seeds(load(path, variant or "", changes), number)
-    return load_variants(path, changes) if variant is None else [load(path, variant, changes)]
+def _scenes(
+    path: Path, variant: str | None, changes: dict[str, Any], number: int
+) -> list[AnyScene]:
+    """Return the variants, or member `number` of an ensemble of each, from 1; 0: none."""
+    found = load_variants(path, changes) if variant is None else [load(path, variant, changes)]
+    if not number:
+        return found
+    seeds = [_seeds(one, number) for one in found]
+    if not any(seeds):
+        allowed = "needs random joints: [scatter] or joint_sets.*.scatter, with a seed"
+        raise SceneError(found[0].where, "--ensemble", None, allowed)
+    return [load(path, one.name, changes | own) for one, own in zip(found, seeds, strict=True)]
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:
@@ -97,16 +107,13 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 
 
 def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
-    """Return the changes that turn a scene into its member `number`, from 1; raises SceneError if
-    its joints are not random."""
+    """Return the changes that turn a scene into its member `number`, from 1; none if its joints are
+    not random."""
     scatter = getattr(scene, "scatter", None)
     found = {} if scatter is None else {"scatter.seed": scatter.seed}
     for i, one in enumerate(getattr(scene, "joint_sets", [])):
         if one.seed is not None:
             found[f"joint_sets.{i}.seed"] = one.seed
-    if not found:
-        allowed = "needs random joints: [scatter] or joint_sets.*.scatter, with a seed"
-        raise SceneError(scene.where, "--ensemble", None, allowed)
     return {key: seed + number - 1 for key, seed in found.items()}
 
 

@@ -97,13 +97,15 @@ def _receiver(row: dict[str, Any]) -> str:
 
 
 def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.DataFrame:
-    """Return mean and percentiles over the members of each number of the completed rows.
+    """Return mean and percentiles over the members of each number of the completed rows; of peaks
+    without their sign, which differs from member to member.
 
     One row per number: the swept keys, its identification, `number`, STATISTICS, and `members`, the
     number of members that have it.
     """
     same = [key for key in (*keys, *OF_ROW) if key in done and key != MEMBER]
-    long = done.melt(same, numbers, "number")
+    sizes = {"peak": done["peak"].abs()} if "peak" in numbers else {}
+    long = done.assign(**sizes).melt(same, numbers, "number")
     long = long.replace({"value": [inf, -inf]}, nan).dropna(subset="value")
     groups = long.groupby([*same, "number"], sort=False)["value"]
     found = groups.describe([q / 100 for q in PERCENTILES])
@@ -125,11 +127,12 @@ def write_ensemble(
         folders = [Path(folder) for folder in rows.folder.unique()]
         rest = ",".join(f"{key}={value}" for key, value in zip(others, point, strict=False))
         place = out / rest / point[-1]
+        solved = {name for key in ("engine", "one", "other") if key in rows for name in rows[key]}
         results = sorted({file.stem for folder in folders for file in folder.glob("*.nc")})
         found = {
             name: waveforms([f for folder in folders if (f := folder / f"{name}.nc").is_file()])
             for name in results
-            if "." not in name  # as in NAME.stopped.nc, of a run that was interrupted
+            if name.removeprefix("exact-") in solved  # others are of earlier commands
         }
         files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]
         by_solver = {name.removeprefix("exact-"): x for name, x in found.items()}
