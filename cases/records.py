@@ -23,7 +23,7 @@ from jointwave.cases.errors import printable
 from jointwave.cases.files import beside, is_number, read_bytes
 from jointwave.cases.histories import Recorded
 from jointwave.cases.seismogram import FORMATS, format_of, read_traces
-from jointwave.cases.units import KNOWN, TIME, UNITS, split_unit
+from jointwave.cases.units import KNOWN, TIME, split_unit, units_of
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
 SPREAD = 16  # bytes of memory for each of a file's: `0,0` as two numbers, compressed samples
@@ -61,10 +61,10 @@ Where = Callable[[int], str]  #: says where in a file a sample is
 
 
 def read_history(
-    folder: str | Path, file: str, quantity: str, anywhere: bool = False
+    folder: str | Path, file: str, quantity: str, anywhere: bool = False, in_space: bool = False
 ) -> tuple[Recorded, bool]:
-    """Return the history of a load, in SI by its quantity, and whether the file gives the unit of
-    its times.
+    """Return the history of a load, in SI by its quantity, in the plane or in space, and whether
+    the file gives the unit of its times.
 
     file : relative to `folder`; anywhere : whether it may lie outside. Raises ValueError, in one
     line, when there is nothing to read or it is not a history.
@@ -79,8 +79,7 @@ def read_history(
     if load.unit in DIMENSIONLESS:
         load = load._replace(unit="")
     sign = -1.0 if load.name.startswith("-") else 1.0
-    units = UNITS[quantity.removeprefix("incident-")]
-    return Recorded(seconds, sign * load.si(units)), bool(time.unit)
+    return Recorded(seconds, sign * load.si(units_of(quantity, in_space))), bool(time.unit)
 
 
 def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool = True) -> Columns:

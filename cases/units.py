@@ -24,16 +24,26 @@ UNITS = {
     "acceleration": ACCELERATION,
     "rotation": _units("muµμ", "rad") | {"deg": pi / 180},
 }
-KNOWN = {unit: factor for units in (TIME, *UNITS.values()) for unit, factor in units.items()}
+FORCE = _units("kM", "N")  # of a load in space
+EVERY = (TIME, FORCE, *UNITS.values())
+KNOWN = {unit: factor for units in EVERY for unit, factor in units.items()}
+
+
+def units_of(quantity: str, in_space: bool) -> dict[str, float]:
+    """Return the units of a load's quantity, each with its factor to SI, that of SI first."""
+    if quantity == "force" and in_space:
+        return FORCE
+    return UNITS[quantity.removeprefix("incident-")]
 
 
 def _any_of(units: list[str]) -> str:
     return "|".join(map(re.escape, sorted(units, key=len, reverse=True)))
 
 
-#: A unit without brackets; one of SI may end a name after a blank or _, and `8 ms` is a time.
+#: A unit without brackets; one of SI may end a name after a blank or _, `8 ms` is a time, and N is
+#: the north.
 _SEPARATED = re.compile(
-    rf"(.*?\S)(?:\s*[,/]\s*|\sin\s)({_any_of(list(KNOWN))})"
+    rf"(.*?\S)(?:\s*[,/]\s*|\sin\s)({_any_of([one for one in KNOWN if one != 'N'])})"
     rf"|(.*?\S)(?:_|(?<!\d)\s)({_any_of([one for one, factor in KNOWN.items() if factor != 1])})"
 )
 

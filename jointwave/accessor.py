@@ -3,6 +3,7 @@ it along; a script that reads results from files imports this module."""
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -20,19 +21,29 @@ class ResultFigures:
 
     def plot(self, *others: xr.Dataset, width: float = 190.0, font_size: float = 8.0) -> Figure:
         """Return the waveforms at every receiver, with those of other results: of other solvers in
-        the same axes, of other variants in a row of their own.
+        the same axes; of other variants, other physics, or the same solver again, in a row of their
+        own.
 
         width : mm. font_size : points. A static state is subtracted.
         """
         from jointwave.compare.figures.body_maps import scene_of
-        from jointwave.compare.figures.charts.waveforms import draw_solutions
+        from jointwave.compare.figures.charts.waveforms import ASIDE, draw_solutions
         from jointwave.compare.figures.style import printed
         from jointwave.compare.misfit.pairs import Comparison
 
-        found: dict[str, Comparison] = {}
-        for one in (self.result, *others):
-            variant = found.setdefault(one.attrs["variant"], Comparison(scene_of(one)))
-            variant.results[one.attrs["engine"]] = one
+        found: dict[tuple[str, str, int], Comparison] = {}
+        for number, one in enumerate((self.result, *others), start=1):
+            tables, variant, again = json.loads(one.attrs["scene"]), one.attrs["variant"], 0
+            physics = json.dumps({key: x for key, x in tables.items() if key not in ASIDE})
+            scene = scene_of(one)
+            if variant in [known for known, *_ in found]:
+                scene = scene.model_copy(update={"name": f"result {number}"})
+            while (
+                one.attrs["engine"]
+                in (row := found.setdefault((variant, physics, again), Comparison(scene))).results
+            ):
+                again += 1
+            row.results[one.attrs["engine"]] = one
         return draw_solutions(list(found.values()), False, printed(width, font_size))
 
     def plot_map(

@@ -132,6 +132,13 @@ def test_a_scene_is_solved_measured_and_drawn():
     drawn = jw.figure(found, width=90.0), jw.figure([found]), blocks.jw.plot()
     assert len(drawn[0].axes) == len(drawn[1].axes) == 1
     assert all(figure._repr_png_().startswith(b"\x89PNG") for figure in drawn)
+    stronger = jw.simulate(jw.load(ALONE, changes={"load.amplitude": 2e6}), "lattice")
+    again = blocks.jw.plot(exact, stronger, exact)
+    assert [ax.get_title("left") for ax in again.axes] == [
+        f"stress at y = 2 m, {which}" for which in ("base scene", "result 3", "result 4")
+    ]
+    peaks = [[abs(x.get_ydata()).max() for x in ax.lines[1:]] for ax in again.axes]
+    assert [len(one) for one in peaks] == [2, 1, 1] and peaks[1][0] == 2 * peaks[2][0]
 
 
 def test_readings_of_an_array_are_those_by_hand():

@@ -14,6 +14,7 @@ from jointwave.cases.schema.values import (
     Table,
     check_keys,
     contradiction,
+    dimension,
     folder_of,
 )
 
@@ -70,7 +71,8 @@ class Pulse(Table):
 
             folder, anywhere = folder_of(info, self.file_key)
             try:
-                found = read_history(folder, self.file, self.quantity, anywhere)
+                in_space = dimension(info) == 3
+                found = read_history(folder, self.file, self.quantity, anywhere, in_space)
                 self._history, self._timed = found
             except ValueError as error:
                 raise contradiction(".file", self.file, str(error)) from None

@@ -256,8 +256,11 @@ def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFra
 
 
 def _row(key: FreeKey, x: float, error: float, half: float) -> dict[str, Any]:
-    """Return the value of a key, its error and its interval from those of its unknown."""
+    """Return the value of a key, its error and its interval from those of its unknown; infinite
+    where half of it is more than all that its bounds allow."""
     value = key.value(x)
+    if half > key.unknown(key.high) - key.unknown(key.low):
+        error = inf
     if np.isfinite(error):
         low, high = key.value(x - half), key.value(x + half)
     else:
@@ -268,7 +271,8 @@ def _row(key: FreeKey, x: float, error: float, half: float) -> dict[str, Any]:
         "low": low,
         "high": high,
         "start": key.start,
-        "at_bound": min(x - key.unknown(key.low), key.unknown(key.high) - x) <= NEAR,
+        "at_bound": bool(error < inf)
+        and min(x - key.unknown(key.low), key.unknown(key.high) - x) <= NEAR,
     }
 
 

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.scene_type import AnyScene, Either
 from jointwave.cases.schema.keys import field_comments, in_words, keys
-from jointwave.cases.units import UNITS
+from jointwave.cases.units import units_of
 from jointwave.cases.validate import checked
 
 CLOCK = "clock"  # shift added to the times of the files, s
@@ -124,7 +124,7 @@ def unit_of(key: str, scene: AnyScene) -> str:
     *tables, name = key.split(".")
     table: Any = reduce(_part, tables, scene)
     if name == "amplitude":
-        units = UNITS[table.quantity.removeprefix("incident-")]
+        units = units_of(table.quantity, scene.in_space)
         return "" if table.shape == "table" else next(iter(units))
     found = UNIT.match("s" if key == CLOCK else field_comments(table.__class__)[name])
     return found[0] if found else ""

@@ -17,7 +17,10 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.records import read_columns, read_history
 from jointwave.cases.units import split_unit
 from jointwave.cases.warnings import warnings
+from jointwave.compare.figures.drawing.scene import scene_figure
 from jointwave.compare.misfit.external import read_curves
+from jointwave.compare.misfit.pairs import Comparison
+from jointwave.compare.studies.fit_keys import unit_of
 from tests.field_cases.scenes import mass
 
 TIMES = np.array([0.0, 0.1, 0.25, 0.7, 1.0, 20.0]) * 1e-3
@@ -265,13 +268,42 @@ def test_a_load_has_the_unit_of_its_quantity(tmp_path):
     assert read_history(tmp_path, "a", "velocity")[0].stress.tolist() == [0.0, 5.0]
 
 
+def test_a_force_is_in_newtons_in_space_and_per_metre_in_the_plane(tmp_path, monkeypatch):
+    """In the file, of a fitted amplitude, and beside the drawn pulse."""
+    monkeypatch.chdir(tmp_path)
+    for size, unit in (([4.0, 4.0], "N/m"), ([4.0, 4.0, 4.0], "N")):
+        up, middle = [*(0.0 for _ in size[1:]), 1.0], [x / 2 for x in size]
+        load = {"kind": "force", "quantity": "force", "at": middle, "direction": up}
+        tables = mass(4.0, 4.0, time={"duration": 0.02}, record={"points": [middle]})
+        tables |= {"domain": {"size": size}, "boundaries": {}}
+        (tmp_path / "a").write_text(f"t [ms];f [k{unit}]\n0;0\n10;2,5\n")
+        held = tables | {"loads": [load | {"shape": "table", "amplitude": 1.0, "file": "a"}]}
+        assert jointwave.load(held).loads[0].history.stress.tolist() == [0.0, 2500.0]
+        other = unit.removesuffix("/m") + "/m" * (unit == "N")
+        (tmp_path / "a").write_text(f"t [ms];f [k{other}]\n0;0\n10;2,5\n")
+        with pytest.raises(SceneError, match=f"'k{other}': must be {unit}, k{unit}, M{unit}"):
+            jointwave.load(held)
+        pulse = {"shape": "half-sine", "amplitude": 2e3, "period": 0.01}
+        scene = jointwave.load(tables | {"loads": [load | pulse]})
+        assert unit_of("loads.0.amplitude", scene) == unit
+        axes = scene_figure("a", [Comparison(scene)]).figure.axes
+        assert f"(k{unit})" in " ".join(ax.get_title("left") + ax.get_title() for ax in axes)
+
+
 def test_units_of_headers():
     for unit in ("ms", "µs", "m/s²", "kPa"):
         assert split_unit(f"v [{unit}]") == ("v", unit)
     assert split_unit("velocity, mm/s") == ("velocity", "mm/s")
     assert split_unit("t in ms") == ("t", "ms") and split_unit("time_ms") == ("time", "ms")
     assert split_unit("gap@[20,30] [mm]") == ("gap@[20,30]", "mm")
-    for name in ("a blow of 4 ms", "traction_s@[20,20]", "velocity_x", "velocity at y = 20.25 m"):
+    assert split_unit("force, kN") == ("force", "kN")
+    for name in (
+        "velocity, N",
+        "a blow of 4 ms",
+        "traction_s@[20,20]",
+        "velocity_x",
+        "velocity at y = 20.25 m",
+    ):
         assert split_unit(name) == (name, "")
 
 

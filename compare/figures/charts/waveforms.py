@@ -195,7 +195,7 @@ def by_solution(panel: Panel) -> Overlay:
         if (name := beside.curves.name) in panel.given:
             drawn = GIVEN[k % len(GIVEN)]
             drawn = drawn if len(beside.time) <= MOST_MARKS else drawn._replace(marker="")
-            traces.append(Trace(name, drawn, panel.given[name]))
+            traces.append(Trace(name, drawn, panel.given[name] - panel.at_rest))
     reference = label_of(panel.reference)
     return Overlay(panel.heading, panel.place.quantity, panel.at_rest, reference, traces)
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from jointwave.cases.loads import history_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
+from jointwave.cases.units import units_of
 from jointwave.compare.figures.drawing import plane, space
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
@@ -27,13 +28,6 @@ PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.55, 3.6  # inches: pulse, lowest drawin
 FLAT = 0.3  # height over width of drawings, below which they are one below the other
 ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
 SAMPLES, LETTERS = 400, 24  # of the pulse, and in a line above it
-UNITS = {
-    "stress": "Pa",
-    "incident-stress": "Pa",
-    "force": "N/m",
-    "velocity": "m/s",
-    "acceleration": "m/s²",
-}
 #: What a drawing shows of a pillar or a rock mass beside its lines.
 SEEN = (
     *("pillar", "segments", "scatter", "load", "ends", "domain", "regions"),
@@ -97,7 +91,8 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
         ax.remove()
         return
     time, values = pulse_curve(pulse, scene.time.duration)
-    unit = unit_for(UNITS[pulse.quantity], 1.001 * float(np.abs(values).max()))
+    si = next(iter(units_of(pulse.quantity, scene.in_space))).replace("s2", "s²")
+    unit = unit_for(si, 1.001 * float(np.abs(values).max()))
     ax.axhline(0, color="#bbbbbb", linewidth=0.6)
     ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
     kind = getattr(pulse, "kind", "load")

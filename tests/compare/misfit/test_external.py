@@ -215,6 +215,10 @@ def test_curves_are_in_table_figure_and_files(scene, tmp_path):
     assert panel.given[two].max() == pytest.approx(1.1 * stress.max())
     line = draw_solutions([found]).axes[0].lines[-1]
     np.testing.assert_allclose(line.get_ydata(), 1.1e-6 * stress, rtol=1e-12)
+    pressed = scene.model_copy(update={"prestress": Prestress(normal=4e6)})
+    (curve,) = read_curves([save(tmp_path / "total.csv", time, stress + 4e6)], [pressed])
+    for drawn in draw_solutions([compare(pressed, [curve])]).axes[0].lines[1:]:
+        assert np.abs(drawn.get_ydata()).max() == pytest.approx(1e-6 * np.abs(stress).max(), 0.1)
     write_comparisons([found], tmp_path / "out")
     assert one in (tmp_path / "out" / "comparison-misfits.csv").read_text()
     assert two in (tmp_path / "out" / "comparison-alignment.csv").read_text()

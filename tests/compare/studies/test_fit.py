@@ -140,6 +140,7 @@ def test_clock_is_found_to_a_thousandth_of_an_interval(late, free, scene):
         ([f"{LAYER}=1.5e7", LOAD], "misfit of .* another start", None),  # hides the wave
         ([f"{LAYER}=3e8:4e8:4.5e8"], r"stopped at its bound, 4\.5e\+08", [True]),
         ([LOAD, "rock.intact_poisson"], "rock.intact_poisson is not determined", [True, False]),
+        (["pillar.side"], "pillar.side is not determined", [False]),
     ],
 )
 def test_a_fit_that_may_be_wrong_is_said(free, words, bounded, scene):
