@@ -31,6 +31,9 @@ from jointwave.cases.schema.rock_mass import RockMass
 
 #: Sine of the angle up to which a contact lies along joints.
 PARALLEL = 1e-9
+#: Of the compliance of confined rock along a normal, and in shear: the least of a direction with
+#: cuts. The nearest may be zero, and rigid contacts have no step.
+LEAST = 0.05
 
 
 class RigidJoints(NamedTuple):
@@ -123,7 +126,9 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
     if not spaced:  # rock between joints that are alone stays rigid
         none = np.zeros((0, 2))
         return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)
-    fit = nearest_stiffness(intact(elastic_rock(scene.rock), dim), normals)
+    rock = elastic_rock(scene.rock)
+    fit = nearest_stiffness(intact(rock, dim), normals)
+    least = LEAST / np.array([rock.lame + 2 * rock.shear_modulus, rock.shear_modulus])
     index = {one.name: k for k, one in enumerate(sets)}
     direction, apart = np.full(len(sets), -1), np.ones(len(spaced))
     for k, group in enumerate(spaced):
@@ -137,6 +142,7 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
         lines = [*cuts, *joints[1:]] if cuts else joints
         direction[own if cuts else joints] = k
         apart[k] = 1 / sum(1 / (sets[m].spacing or np.inf) for m in lines)
+        fit.compliance[k] = np.maximum(fit.compliance[k], least if cuts else 0.0)
     return RockShare(normals, fit.compliance, apart, direction, fit.left_over)
 
 

@@ -70,7 +70,7 @@ def moments(
     """Return the sums of arm times force of sides and loads on the places [r, d, d, n], N m."""
     dim, places = system.blocks.dim, receivers.places
     found = acting(system, places, samples, first)[:, dim:]
-    return found.reshape(len(places), dim, dim, -1)
+    return found.reshape(len(places), dim, dim, found.shape[-1])
 
 
 def quantities(

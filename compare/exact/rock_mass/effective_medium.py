@@ -1,9 +1,10 @@
 """Scenes of plane waves in densely jointed rock, as waves of its effective medium.
 
 A wave is that of the medium (`cases.material.effective_medium`) along the direction that the scene
-gives, at its own speed: the fastest for P, the slowest for S, with the polarisation nearest to the
-scene's. `quantity = "stress"` is the traction on its front, rho c v. Where joints cross, it enters
-all engines through their quiet sides, since the rock beyond is jointed too and transmits no wave of
+gives, at its own speed: for P the one that moves rock most along this direction, which joints that
+open easily make the slowest, for S that of the others with the polarisation nearest to the scene's.
+`quantity = "stress"` is the traction on its front, rho c v. Where joints cross, it enters all
+engines through their quiet sides, since the rock beyond is jointed too and transmits no wave of
 intact rock: the solution is exact for the homogenised rock, and approximate for the jointed one if
 wavelengths are large compared with the spacings.
 
@@ -75,9 +76,11 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     """Return a wave of a scene in a medium of stiffness C (Pa, Voigt's form)."""
     n, density = np.array(wave.direction), scene.rock.density
     found, shapes = speeds(C, density, n)
-    along = n if wave.kind == "P" else across(n, wave)
-    slow = np.abs(along @ shapes[:, :-1]).argmax()
-    branch = len(found) - 1 if wave.kind == "P" else int(slow)
+    along, branch = n, int(np.abs(n @ shapes).argmax())
+    if wave.kind == "S":
+        along, shared = across(n, wave), np.abs(across(n, wave) @ shapes)
+        shared[branch] = -1.0
+        branch = int(shared.argmax())
     c = float(found[branch])
     alike = shapes[:, np.abs(found - c) < ALIKE * c]  # any S waves of one speed are such waves
     g = alike @ (along @ alike)

@@ -101,6 +101,27 @@ def test_joints_of_a_lattice_and_its_cuts_are_counted_once(rock_with):
     assert own.shear == pytest.approx([1 / (2.5e-10 + 1 / 4e10)] * 2 + [4e10] * 2, rel=1e-12)
 
 
+#: Sets in the plane and in space, as dip and dip direction, and a slab that one joint halves.
+RIGID = {
+    "10 degrees apart": ([(0.0, None), (10.0, None)], {"spacing": 4.0}, [12.0, 10.0]),
+    "three in space": ([(30.0, 120.0), (70.0, 210.0), (60.0, 160.0)], {"spacing": 4.0}, [9.0] * 3),
+    "thin slab": ([(0.0, 0.0)], {"through": [4.0, 5.0, 2.0]}, [8.0, 10.0, 4.0]),
+}
+
+
+@pytest.mark.parametrize("name", RIGID)
+def test_cuts_give_way_where_the_nearest_stiffness_is_rigid(rock_with, name):
+    """As 1/20 of confined rock, 60 GPa, and the least block then bounds the step: waves of
+    sqrt(20) times its 4804 m/s take some four of them through blocks of 0.3 m."""
+    attitudes, where, size = RIGID[name]
+    sets = [{"dip": dip, "dip_direction": way} | where for dip, way in attitudes]
+    sets = [{key: one for key, one in each.items() if one is not None} for each in sets]
+    scene = rock_with(*sets, domain={"size": size}, **in_blocks(2.0))
+    spacings = np.array([one.spacing for one in further_sets(scene)])
+    assert (found(scene).normal[len(sets) :] * spacings).max() == pytest.approx(20 * 6e10)
+    assert blocks_of(scene).critical > 0.3 / (20**0.5 * 4804) / 4
+
+
 def test_a_joint_alone_among_sets_is_as_it_is(rock_with):
     sets = {"dip": 0.0, "spacing": 2.0}, {"dip": 90.0, "spacing": 2.0}
     own = found(rock_with(*sets, {"dip": 30.0, "through": [6.0, 5.0]}))

@@ -178,6 +178,16 @@ def test_the_ledger_of_a_shaken_base_closes(rock_mass):
     assert result.displacement.values[0, -1] == pytest.approx(moved, rel=0.02)
 
 
+def test_joints_and_snapshots_are_recorded_without_points(rock_mass):
+    loads, fields = [PRESSURE | {"side": "left"}], {"fields": 1e-3}
+    one, other = (
+        simulate(rock_mass(loads=loads, record=keys | fields)) for keys in ({}, {"points": None})
+    )
+    assert "velocity" in one and "velocity" not in other and np.abs(one.gap).max() > 0
+    for key in ("gap", "slip", "traction", "field_velocity", "field_stress"):
+        assert other[key].equals(one[key]), key
+
+
 def test_a_rigid_motion_meets_no_resistance(rock_mass, joint):
     """Free sides, gravity from t = 0 on: all blocks fall, and joints carry nothing."""
     own = rock_mass(
