@@ -1,8 +1,10 @@
 """`jointwave picture`: a scene, or what its results look like over the whole body."""
 
+import json
 import re
 from pathlib import Path
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 from jointwave.cases.errors import SceneError
@@ -12,6 +14,7 @@ from jointwave.compare.cli.terminal import say
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.body_maps import maps_of, scene_of
 from jointwave.compare.figures.charts.maps import draw_maps
+from jointwave.compare.figures.charts.waveforms import ASIDE
 from jointwave.compare.figures.drawing.scene import scene_figure
 from jointwave.compare.figures.export import write_drawing
 from jointwave.compare.misfit.pairs import Comparison
@@ -52,6 +55,22 @@ def _map(folder: Path, quantity: str, time: float | None) -> tuple[Figure, str]:
     files = [file for file in files if file.exists()]
     if not files:
         raise SceneError(str(folder), "", None, "has no result of an engine, such as dem.nc")
-    results = [load_netcdf(file) for file in files[:2]]
+    results = [_result(file) for file in files[:2]]
+    one, other = (json.loads(results[k].attrs["scene"]) for k in (0, -1))
+    if differing := [key for key in one if key not in ASIDE and one[key] != other.get(key)]:
+        allowed = f"has results of two scenes, by {', '.join(differing)}: name one of the files"
+        raise SceneError(str(folder), "", None, allowed)
     scene = scene_of(results[0])
     return draw_maps(maps_of(scene, results, quantity, time), scene), scene.title
+
+
+def _result(file: Path) -> xr.Dataset:
+    """Return a result from its file; raises SceneError for any other file."""
+    try:
+        found = load_netcdf(file)
+        found.attrs["scene"], found.attrs["engine"], found.attrs["variant"]
+    except MemoryError:
+        raise
+    except Exception:  # the libraries raise many kinds
+        raise SceneError(str(file), "", None, "is damaged, or no result of `run`") from None
+    return found

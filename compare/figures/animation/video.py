@@ -10,6 +10,7 @@ from subprocess import PIPE, Popen
 import numpy as np
 from imageio_ffmpeg import get_ffmpeg_exe
 
+from jointwave.cases.errors import SceneError
 from jointwave.compare.runs.output import FILMS, check_out, write
 
 #: Every player shows H.264 in 4:2:0; its index comes first, so that it plays while it loads. Each
@@ -19,6 +20,8 @@ ENCODING = {
     ".mp4": ["-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
     ".gif": ["-filter_complex", PALETTES],
 }
+#: Images a second that files of a kind can hold; a GIF counts hundredths of a second.
+MOST = {".mp4": 1000.0, ".gif": 100.0}
 
 
 def write_video(
@@ -26,9 +29,13 @@ def write_video(
 ) -> Path:
     """Write images, uint8 arrays [height, width, 4], as MP4 or GIF by the path's suffix.
 
-    size : width and height, even. rate : images per second.
+    size : width and height, even. rate : images per second. Raises SceneError for more than
+    `MOST`.
     """
     check_out(path, FILMS)
+    if rate > (most := MOST[path.suffix]):
+        allowed = f"{rate:.4g} frames a second, at most {most:g}: --frames, --seconds"
+        raise SceneError(str(path), "", None, allowed)
     raw = f"-f rawvideo -pix_fmt rgba -s {size[0]}x{size[1]} -r {Fraction(rate)} -i -".split()
 
     def save(new: Path) -> None:

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from imageio_ffmpeg import count_frames_and_secs
 from PIL import Image
 
@@ -58,6 +59,16 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder,
     ):
         done = jointwave("picture", folder, *arguments, code=2)
         assert said in done.err and done.err.count("\n") == 1 and not done.out
+    stronger = ("--set", "load.amplitude=3e6", "--set", "record.fields=1e-3", "--out", folder)
+    jointwave("run", LAYER, *SMALL, "--variant", "", *stronger)
+    said = jointwave("picture", folder, code=2).err
+    assert (
+        said == f"jointwave: {folder}: has results of two scenes, by load: name one of the files\n"
+    )
+    for content in (b"", b"CDF", xr.Dataset({"a": 1.0}).to_netcdf()):
+        Path(folder, "dem.nc").write_bytes(content)
+        said = jointwave("picture", folder, code=2).err
+        assert said == f"jointwave: {folder}/dem.nc: is damaged, or no result of `run`\n"
 
 
 def test_animate_writes_a_film_of_both_engines(jointwave):

@@ -5,6 +5,7 @@ import pytest
 from imageio_ffmpeg import count_frames_and_secs, read_frames
 from PIL import Image
 
+from jointwave.cases.errors import SceneError
 from jointwave.compare.figures.animation.video import write_video
 
 COUNT, SECONDS, SIZE = 12, 1.5, (64, 48)
@@ -51,6 +52,13 @@ def test_gif_has_every_picture_and_the_whole_time(tmp_path):
             lasted.append(file.info["duration"])
             assert off(np.asarray(file.convert("RGB")), i) < 8
     assert sum(lasted) == 1000 and set(lasted) == {80, 90}  # ms; 12 do not divide a second
+
+
+@pytest.mark.parametrize(("ending", "most"), [(".mp4", 1000), (".gif", 100)])
+def test_more_frames_a_second_than_a_file_holds_are_refused(ending, most, tmp_path):
+    with pytest.raises(SceneError, match=rf"1200 frames a second, at most {most}: --frames, --sec"):
+        write(tmp_path / f"bar{ending}", seconds=0.01)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("ending", [".mp4", ".gif"])
