@@ -13,6 +13,8 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex, Halves
 from jointwave.cases.geometry.relations import composed, distinct, sums
 
+LEVEL = 1e-9  # of a unit normal: a component below it is round-off
+
 
 class Moments(NamedTuple):
     """Volume or area [n], m^k; centroid [n, d], m; second moment about the centroid [n, d, d],
@@ -192,6 +194,31 @@ def frames(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     length = np.linalg.norm(strike, axis=1)[:, None]
     one = np.where(length > 1e-12, strike / np.maximum(length, 1e-12), [[1.0, 0.0, 0.0]])
     return one, np.cross(normal, one)
+
+
+def frames_of(normal: np.ndarray) -> np.ndarray:
+    """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
+    is the normal rotated to the left, in space they are the strike and the line of dip."""
+    tangents: tuple[np.ndarray, ...] = ()
+    if (dim := normal.shape[1]) == 2:
+        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
+    elif dim == 3:
+        tangents = frames(normal)
+    return np.stack([normal, *tangents], axis=1)
+
+
+def upwards(frame: np.ndarray) -> np.ndarray:
+    """Return what turns tractions and jumps in frames of joints [w, d, d] into those on the side
+    above the joint, relative to that below, in the frame of the normal that points up: matrices
+    [w, d, d] for rows, of 0, 1 and -1. Of a vertical joint the normal points along y, or else
+    along x, instead.
+
+    In the plane they are the same; in space the numbers of the blocks would decide their sign.
+    """
+    normal = frame[:, 0]
+    last = normal.shape[1] - 1 - (np.abs(normal[:, ::-1]) > LEVEL).argmax(axis=1)
+    sign = np.sign(np.take_along_axis(normal, last[:, None], axis=1))
+    return np.rint(sign[:, None] * frame @ frames_of(sign * normal).swapaxes(1, 2))
 
 
 def widths(body: Complex, half: Halves) -> np.ndarray:

@@ -5,8 +5,9 @@ the place on them that is nearest to the receiver, between their points there.
 """
 
 import numpy as np
-from scipy.sparse import csr_matrix, kron
+from scipy.sparse import bsr_matrix, csr_matrix, kron
 
+from jointwave.cases.geometry.measure import upwards
 from jointwave.cases.geometry.relations import joined
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.scene import SceneBody
@@ -41,21 +42,27 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
     at, pairs = places_in(body, points), stress_components(dim).values()
     share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
     constant, carried = np.zeros((len(points), len(pairs))), np.zeros((len(joints), dim))
-    read, area = np.zeros((0, 0)), np.zeros(0)
+    read, area = csr_matrix((0, 0)), np.zeros(0)
     if body.joints is not None and len(body.joints.weight):
-        read, area = nearest_points(body, body.joints, joints), body.joints.weight
+        area, each = np.repeat(body.joints.weight, dim), np.arange(len(body.joints.weight) + 1)
+        turned = bsr_matrix((upwards(body.joints.frame).swapaxes(1, 2), each[:-1], each))
+        read = kron(nearest_points(body, body.joints, joints), np.eye(dim)) @ turned
+        read = csr_matrix(read).sorted_indices()
+        read.eliminate_zeros()
     if stress is not None:
         constant[:] = [stress[i, j] for i, j in pairs]
         if body.joints is not None:
-            carried = read @ body.joints.carried(stress).reshape(-1, dim)
+            carried = read @ body.joints.carried(stress)
     recovered, viscous = _recovered(found, points, at, share)
     return Readings(
         motion=motion_at(body, at, share, len(points)),
         stress=recovered,
         constant=constant.ravel(),
-        traction=csr_matrix(kron(read / area, np.eye(dim))),
+        traction=csr_matrix(
+            (read.data / area[read.indices], read.indices, read.indptr), read.shape
+        ),
         carried=carried.ravel(),
-        jump=csr_matrix(kron(read, np.eye(dim))),
+        jump=read,
         viscous=viscous,
     )
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, identity, kron
 
-from jointwave.cases.geometry.measure import frames
+from jointwave.cases.geometry.measure import frames_of
 from jointwave.continuum.space.model import JumpOperator, in_motion
 from jointwave.continuum.space.traces import Trace
 
@@ -26,12 +26,7 @@ def jump_operator(
     jump.eliminate_zeros()
     open_ = np.flatnonzero(np.diff(jump.indptr))
     normal = np.repeat(one.normal[:, :1], points, axis=1).reshape(-1, one.normal.shape[2])
-    normal, tangents = in_motion(normal[open_], components), tuple[np.ndarray, ...]()
-    if components == 2:
-        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
-    elif components == 3:
-        tangents = frames(normal)
-    frame, each = np.stack([normal, *tangents], axis=1), np.arange(len(open_) + 1)
+    frame, each = frames_of(in_motion(normal[open_], components)), np.arange(len(open_) + 1)
     size = len(open_) * components
     turned = bsr_matrix((frame, each[:-1], each), shape=(size, size))
     matrix = csr_matrix(turned @ kron(jump[open_], identity(components), format="csr"))

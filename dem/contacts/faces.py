@@ -9,7 +9,7 @@ import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import NO_SET
-from jointwave.cases.geometry.measure import Outlines, frames, joined
+from jointwave.cases.geometry.measure import Outlines, frames_of, joined
 from jointwave.dem.sides.boundaries import facets_on, freedoms, levers
 
 
@@ -86,17 +86,6 @@ def _some(pieces: Outlines, rows: np.ndarray) -> Outlines:
     first = np.append(0, np.cumsum(size))
     at = np.arange(first[-1]) + np.repeat(pieces.first[rows] - first[:-1], size)
     return Outlines(pieces.corners[at], first)
-
-
-def frames_of(normal: np.ndarray) -> np.ndarray:
-    """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
-    is the normal rotated to the left, in space they are the strike and the line of dip."""
-    tangents: tuple[np.ndarray, ...] = ()
-    if (dim := normal.shape[1]) == 2:
-        tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
-    elif dim == 3:
-        tangents = frames(normal)
-    return np.stack([normal, *tangents], axis=1)
 
 
 def extents(contacts: Contacts, points: np.ndarray, blocks: int) -> np.ndarray:

@@ -21,15 +21,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from jointwave.dem.contacts.faces import Contacts, frames_of
+from jointwave.cases.geometry.measure import upwards
 from jointwave.dem.kernel.model import Samples, State
 from jointwave.dem.readings.receivers import Receivers, everywhere
 from jointwave.dem.readings.samples import acting
 from jointwave.dem.system import BlockSystem
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.stress import stress_components
-
-LEVEL = 1e-9  #: of a unit normal: a component below it is round-off
 
 
 class PointsAndJoints(Receivers):
@@ -96,7 +94,7 @@ def quantities(
         mean = receivers.weights @ stress.reshape(len(stress), -1)
         found["stress"] = mean.reshape(-1, *stress.shape[1:])
     if receivers.joints.shape[0]:
-        turned = upwards(receivers.faces)
+        turned = upwards(receivers.faces.frame)
         traction, moved = (
             (receivers.joints @ (one @ turned).reshape(len(one), -1)).reshape(-1, *one.shape[1:])
             for one in (tractions(receivers, contact), jumps(receivers, contact))
@@ -151,16 +149,3 @@ def jumps(receivers: Receivers, contact: np.ndarray) -> np.ndarray:
     excess = faces.excess[:, np.minimum(np.arange(dim), 1)]
     moved = contact[:, -dim:].swapaxes(1, 2)
     return moved + excess[:, None] * tractions(receivers, contact)
-
-
-def upwards(faces: Contacts) -> np.ndarray:
-    """Return what turns tractions and jumps of contacts, in their frames, into those on the side
-    above the joint, relative to that below, in the frame of the normal that points up: matrices
-    [w, d, d] for rows. Of a vertical joint the normal points along y, or else along x, instead.
-
-    In the plane they are the same; in space the numbers of the blocks would decide their sign.
-    """
-    normal = faces.frame[:, 0]
-    last = normal.shape[1] - 1 - (np.abs(normal[:, ::-1]) > LEVEL).argmax(axis=1)
-    sign = np.sign(np.take_along_axis(normal, last[:, None], axis=1))
-    return sign[:, None] * faces.frame @ frames_of(sign * normal).swapaxes(1, 2)

@@ -11,14 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
-from jointwave.cases.geometry.measure import along_and_across
+from jointwave.cases.geometry.measure import along_and_across, frames_of
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.partition.pillar import SIDES
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import LEAN
-from jointwave.dem.contacts.faces import frames_of, jumps_of, springs_of
+from jointwave.dem.contacts.faces import jumps_of, springs_of
 from jointwave.dem.sides.boundaries import facets_on, points_on
 from jointwave.dem.sides.loads import Pattern, reactions
 from jointwave.dem.sides.shaking import Base

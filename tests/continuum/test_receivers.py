@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.continuum.problem import problem_of
 from jointwave.continuum.receivers.sections import points_on_axis, sections
 from jointwave.continuum.scene import body_of
 from tests.continuum.drawing import drawn
@@ -87,3 +88,28 @@ def test_sections_of_skewed_cells_read_uniform_stress_exactly(kind, column, tmp_
     force = uniform_force(rock.intact_modulus, rock.intact_poisson, dim)
     assert np.abs(values - force).max() < 1e-11 * np.abs(force).max()
     assert read.inertia.nnz == 0
+
+
+UPPER = [([3.0, 8.0, 2.0], 60.0, 180.0), ([8.0, 3.0, 2.0], 60.0, 270.0), (None, 90.0, -60.2551187)]
+
+
+@pytest.mark.parametrize(("size", "dip", "towards"), UPPER)
+def test_joints_in_space_are_read_above_them(size, dip, towards, rock_mass, tmp_path, monkeypatch):
+    """Whatever the numbers of blocks, which are cells in a file, on either side of one joint."""
+    joint = {"dip": dip, "dip_direction": towards % 360, "spacing": 1.0}
+    domain, places = {"size": size}, [[0.5 * one for one in size or []]]
+    if size is None:  # upright, 0.7 m in y on 0.4 m in x: its normal points to the north
+        monkeypatch.chdir(tmp_path)
+        drawn(tmp_path / "rock.msh", "tetrahedron", [(0.6, 1.3)], names=["joint set 0"], elements=3)
+        del joint["spacing"]
+        domain, places = {"mesh": "rock.msh"}, [[0.0, 0.95, 0.0]]
+    stress = {"xx": 3e6, "yy": 1e6, "zz": 2e6, "xy": 4e5, "yz": -6e5, "xz": 8e5}
+    scene = rock_mass(joint, dim=3, domain=domain, prestress=stress, record={"joints": places})
+    steep, turned = np.radians([dip, towards])
+    along, up = np.array([np.sin(turned), np.cos(turned), 0.0]), np.eye(3)[2]
+    normal = np.sin(steep) * along + np.cos(steep) * up
+    upwards = np.sin(steep) * up - np.cos(steep) * along
+    traction = scene.prestress.tensor @ normal
+    expected = [frame @ traction for frame in (normal, np.cross(upwards, normal), upwards)]
+    carried = problem_of(scene, body_of(scene)).readings.carried
+    np.testing.assert_allclose(carried, expected, rtol=0, atol=1e-1)

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from closed_forms.bloch import leapfrog, modes, periodic
+from jointwave.cases.geometry.measure import frames_of
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
 from jointwave.dem.contacts.chunks import chunks_of
-from jointwave.dem.contacts.faces import Contacts, frames_of
+from jointwave.dem.contacts.faces import Contacts
 from jointwave.dem.kernel.leapfrog import march
 from jointwave.dem.kernel.model import (
     Blocks,
