@@ -62,7 +62,11 @@ over() {  # a Python that has dolfinx
     "$1" -c 'import site, sys; print(*(site.getsitepackages() if sys.prefix != sys.base_prefix else []), sep="\n")' \
         >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/active-environment.pth"
 }
-by_active() { over "$(command -v python3)"; }
+by_active() {
+    over "$(command -v python3)" || return 1
+    # pip's wheel in a venv finds its MPI from there alone: .venv gets a wheel of its own.
+    imports_dolfinx .venv/bin/python || { rm -rf .venv && by_pip; }
+}
 by_apt() { apt_install python3-dolfinx python3-gmsh python3-venv && over /usr/bin/python3; }
 by_pip() {
     # A bare machine has no Python, and Debian's no venv.
