@@ -64,10 +64,13 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     if scene.prestress is not None:
         stress = scene.prestress.tensor[np.ix_(directions(body), directions(body))]
 
+    relaxes = mechanisms_of(scene, found.model)
+
     def impedances(facets: Facets) -> np.ndarray:
-        """Return those of rock of a script, tensors [n, d, d], Pa s/m."""
+        """Return those of rock of a script at its reference frequency, [n, d, d], Pa s/m."""
         which = found.of_cell[cells_behind(body, facets)]
-        return impedances_along([found.materials[k] for k in which], facets.normal)
+        unrelaxed = impedances_along([found.materials[k] for k in which], facets.normal)
+        return unrelaxed / np.sqrt(1.0 if relaxes is None else relaxes.unrelaxed)
 
     read: Any = readings_of_pillar if scene.is_column else readings_of
     return Problem(
@@ -77,7 +80,7 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
         stiffest=None if own is None else stiffest(own, scene),
         stress=stress,
         alpha=scene.damping.alpha or 0.0,
-        mechanisms=mechanisms_of(scene, found.model),
+        mechanisms=relaxes,
         steady=np.sum(steady, axis=0) if steady else None,
         quiet=quiet_sides(scene, body, found.model, impedances if found.scripted else None),
         held=held_sides(scene, body),

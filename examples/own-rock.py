@@ -111,7 +111,7 @@ moduli = np.einsum("ia,jb,kc,md,abcd->ijkm", turn, turn, turn, turn, of_bedding)
 
 def bedded(scene, space):
     """Return transversely isotropic rock."""
-    return continuum.anisotropic(space, DENSITY, ufl.as_tensor(moduli.tolist()))
+    return continuum.anisotropic(space, DENSITY, moduli)
 
 
 values, shapes = np.linalg.eigh(moduli[:, 1, :, 1])

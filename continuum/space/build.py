@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import ufl
 from scipy.sparse import csr_matrix
+from ufl.algorithms.analysis import has_type
 
 from jointwave.cases.geometry.relations import joined
 from jointwave.continuum.mesh.conforming import (
@@ -210,7 +211,13 @@ def nodal_rule(kind: str, order: int) -> dict[str, Any]:
 
 
 def by_rule(form: ufl.Form, rule: dict[str, Any]) -> ufl.Form:
-    """Return a form with this metadata in its integrals that state no rule of quadrature."""
-    return ufl.Form([
-        one.reconstruct(metadata={**rule, **one.metadata()}) for one in form.integrals()
-    ])  # fmt: skip
+    """Return a form with this metadata in its integrals that state no rule of quadrature.
+
+    Functions of place keep UFL's own, whose points are inside cells: at nodes of faces a modulus
+    that jumps there would be that of one side.
+    """
+    integrals = []
+    for one in form.integrals():
+        own = {} if has_type(one.integrand(), ufl.classes.SpatialCoordinate) else rule
+        integrals.append(one.reconstruct(metadata={**own, **one.metadata()}))
+    return ufl.Form(integrals)

@@ -18,7 +18,8 @@ class Forms(NamedTuple):
     """Rock, as bilinear forms of UFL on a vector space.
 
     mass : kg. stiffness : N/m. damping : N s/m; None without. Integrals that state no quadrature
-    take that of the body: at the nodes where this makes the mass diagonal.
+    take that of the body, at the nodes where this makes the mass diagonal; those of functions of
+    `ufl.SpatialCoordinate` UFL's own, and row sums of the mass.
     """
 
     mass: Any

@@ -2,13 +2,15 @@
 
 Of displacements u = E x and v = F x the integrand of the stiffness is C_ijkl E_kl F_ij, and of
 translations u = v = e that of the mass is rho. The means of both over each cell give stress,
-sections, quiet sides and bounds of rock in any form.
+sections, quiet sides and bounds of rock in any form, and tell whether it is rock: whether it has
+one density, and moduli that are symmetric, not negative, and do not resist rigid motion.
 """
 
 from typing import Any
 
 import numpy as np
 import ufl
+from ufl.algorithms.analysis import has_type
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.effective_medium import PAIRS, impedance
@@ -18,7 +20,7 @@ from jointwave.continuum.space.model import Forms
 from jointwave.continuum.space.rock import Material
 
 DIGITS = 9  # to which moduli of cells of one rock agree
-ZERO = 1e-9  # of the stiffness: the force of a translation, damping of another form
+ZERO = 1e-9  # of the largest entry: what must be zero
 
 
 class CellMeans:
@@ -44,10 +46,9 @@ class CellMeans:
                 part.value[...] = given if given.ndim == k + 1 else 0.0
         return self.sums() / self.volume
 
-    def moduli(self) -> np.ndarray:
-        """Return the form of unit strains in Voigt's order [cells, n, n]."""
-        strains = strains_of(self.dim, self.size)
-        return np.moveaxis(np.array([[self.of(u, v) for u in strains] for v in strains]), 2, 0)
+    def table(self, motions: list[np.ndarray]) -> np.ndarray:
+        """Return the means for each displacement v with each u [cells, n, n]."""
+        return np.moveaxis(np.array([[self.of(u, v) for u in motions] for v in motions]), 2, 0)
 
 
 def strains_of(dim: int, size: int) -> np.ndarray:
@@ -66,28 +67,61 @@ def materials_of(
 ) -> tuple[list[Material], np.ndarray]:
     """Return the materials of forms on a space, and which of them each cell has, int array [cells].
 
-    own : of the scene. Raises SceneError for a stiffness that resists translations, for damping
-    that is no time constant times the stiffness, and for what the scene takes from its own rock.
+    own : of the scene. Raises SceneError for forms that are not of rock, for damping that is no
+    time constant times the stiffness, and for what the scene takes from its own rock.
     """
+    if not isinstance(forms, Forms):
+        _refuse(scene, "the function must return Forms(mass, stiffness, damping)")
+    for name, form in forms._asdict().items():
+        if form is not None and not (isinstance(form, ufl.Form) and len(form.arguments()) == 2):
+            _refuse(scene, f"{name} must be a form of a trial and a test function")
     _refuse_own_rock(scene, forms, own)
-    means, masses = CellMeans(space, forms.stiffness), CellMeans(space, forms.mass)
-    moves, far = np.eye(means.size), float(np.ptp(space.mesh.geometry.x, axis=0).max())
-    density, stiffness = masses.of(moves[0], moves[0]), means.moduli()
-    held = max(np.abs(means.of(far * one, far * one)).max() for one in moves)
-    if held > ZERO * np.abs(stiffness).max():
-        _refuse(scene, "stiffness in the rock must be of strains, not of displacements")
+    density = _density(scene, forms.mass, space)
+    means, far = (
+        CellMeans(space, forms.stiffness),
+        float(np.ptp(space.mesh.geometry.x, axis=0).max()),
+    )
+    strains, rigid = strains_of(means.dim, means.size), [*far * np.eye(means.size)]
+    if means.dim > 1:
+        rigid += [np.triu(one, 1) - np.tril(one, -1) for one in strains[means.dim :]]
+    motions, n = [*rigid, *strains], len(rigid)
+    table, bent = means.table(motions), strains.sum(axis=0)
+    stiffness, most = table[:, n:, n:].copy(), np.abs(table).max()
+    table[:, n:, n:] = 0.0
+    least = np.linalg.eigvalsh(stiffness).min() if np.isfinite(most) else np.nan
+    for wrong, why in (
+        (min(least, 0.0), f"must not be negative: it has a modulus of {least:.3g} Pa"),
+        (means.of(2 * bent, bent) - 2 * means.of(bent, bent), "must be linear in the displacement"),
+        (table, "in the rock must be of strains, not of displacements or rotations"),
+        (stiffness - stiffness.swapaxes(1, 2), "must be symmetric in trial and test function"),
+    ):
+        if not np.abs(wrong).max() <= ZERO * most:
+            _refuse(scene, f"stiffness {why}")
     eta = np.zeros(len(density))
     if forms.damping is not None:
-        damping = CellMeans(space, forms.damping).moduli()
-        eta = np.trace(damping, axis1=1, axis2=2) / np.trace(stiffness, axis1=1, axis2=2)
-        if np.abs(damping - eta[:, None, None] * stiffness).max() > ZERO * np.abs(damping).max():
-            _refuse(scene, "damping must be a time constant times the stiffness")
+        damping = CellMeans(space, forms.damping).table(motions)
+        table[:, n:, n:] = stiffness
+        eta = np.trace(damping[:, n:, n:], axis1=1, axis2=2) / np.trace(stiffness, axis1=1, axis2=2)
+        off = np.abs(damping - eta[:, None, None] * table).max()
+        if not off <= ZERO * np.abs(damping).max() or (eta < 0).any():
+            _refuse(scene, "damping must be a time constant, not below 0, times the stiffness")
     rows = np.column_stack([density, eta, stiffness.reshape(len(density), -1)])
     scale = np.abs(rows).max(axis=0)
     alike = np.rint(10**DIGITS * rows / np.where(scale > 0, scale, 1.0))
     _, first, which = np.unique(alike, axis=0, return_index=True, return_inverse=True)
     each = [Material(float(density[k]), stiffness[k], float(eta[k])) for k in first]
     return each, which.reshape(-1)
+
+
+def _density(scene: AnyScene, mass: ufl.Form, space: Any) -> np.ndarray:
+    """Return the density of each cell, kg/m3 [cells]; raises SceneError where a mass has none."""
+    means = CellMeans(space, mass)
+    table = means.table([*np.eye(means.size)])
+    found = table[:, 0, 0]
+    off = np.abs(table - found[:, None, None] * np.eye(means.size)).max()
+    if not found.min() > 0 or off > ZERO * found.max() or has_type(mass, ufl.classes.Derivative):
+        _refuse(scene, "mass must be a density above 0, one for all directions, times u . v")
+    return found
 
 
 def _refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None:

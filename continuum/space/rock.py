@@ -55,7 +55,9 @@ def isotropic(space: Any, density: Any, lame: Any, shear: Any, time_constant: An
 
 
 def anisotropic(space: Any, density: Any, moduli: Any, time_constant: Any = None) -> Forms:
-    """Return anisotropic rock; moduli : C_ijkl, Pa, a tensor of UFL of rank 4 [d, d, d, d]."""
+    """Return anisotropic rock; moduli : C_ijkl, Pa, an array or a tensor of UFL [d, d, d, d]."""
+    if isinstance(moduli, np.ndarray):
+        moduli = ufl.as_tensor(moduli.tolist())
     i, j, k, m = ufl.indices(4)
 
     def stress(eps: Any) -> Any:

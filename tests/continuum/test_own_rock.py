@@ -1,14 +1,20 @@
 """Rock of a script: stress, quiet sides and sections by its forms, and what is refused."""
 
+import logging
+
 import numpy as np
 import pytest
 import ufl
+from ufl import inner
 
 from jointwave import continuum
 from jointwave.cases.errors import SceneError
+from jointwave.cases.material.constant_q import mechanisms_of
+from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
+from jointwave.continuum.space.compat import cell_constants, cell_corners
 from tests.continuum.bodies import LAME, PUSH, SHEAR
 
 QUIET = {"bottom": "fixed", "left": "quiet", "right": "quiet"}
@@ -98,15 +104,50 @@ def test_sections_of_pillars_are_of_the_scripts_rock(column, dim, cell):
         np.testing.assert_allclose(heavy[0], known[0], rtol=0, atol=2e-4 * np.abs(known).max())
 
 
-def bedded_in_springs(scene, space):
-    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
-    own = same(scene, space)
-    return own._replace(stiffness=own.stiffness + 1e9 * ufl.inner(u, v) * ufl.dx)
+def changed(name, of):
+    """Return rock with another form, an integrand of trial and test function, strains and rock."""
+
+    def rock(scene, space):
+        u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+        own = same(scene, space)
+        form = of(u, v, ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v)))
+        return own._replace(**{name: form * ufl.dx})
+
+    return rock
 
 
-def damped_apart(scene, space):
-    own = same(scene, space)
-    return own._replace(damping=1e-4 * continuum.isotropic(space, 1.0, LAME, 0.0).stiffness)
+def springs(u, v, a, b):
+    return 2 * SHEAR * inner(a, b) + 1e9 * inner(u, v)
+
+
+def one_way(u, v, a, b):
+    return 2 * SHEAR * inner(a, b) + SHEAR * a[0, 0] * b[1, 1]
+
+
+def carried_along(u, v, a, b):
+    return 2 * SHEAR * inner(a, b) + 1e9 * inner(ufl.grad(u) * ufl.as_vector([1.0, 0.0]), v)
+
+
+#: Forms that are of no rock, and the words of their refusal.
+NO_ROCK = [
+    ("stiffness", springs, "strains, not of displacements or rotations"),
+    ("stiffness", carried_along, "strains, not of displacements or rotations"),
+    ("stiffness", lambda u, v, a, b: SHEAR * inner(ufl.grad(u), ufl.grad(v)), "or rotations"),
+    ("stiffness", one_way, "symmetric in trial and test function"),
+    ("stiffness", lambda u, v, a, b: inner(u, u) * inner(a, b), "linear in the displacement"),
+    ("stiffness", lambda u, v, a, b: inner(a, a) + 0 * v[0], "a form of a trial and a test"),
+    ("stiffness", lambda u, v, a, b: -SHEAR * inner(a, b), r"a modulus of -2.08e\+10 Pa"),
+    ("mass", lambda u, v, a, b: -2600.0 * inner(u, v), "density above 0"),
+    ("mass", lambda u, v, a, b: 2600.0 * (inner(u, v) + u[0] * v[0]), "one for all directions"),
+    ("mass", lambda u, v, a, b: 2600.0 * (inner(u, v) + u[0] * v[1] + u[1] * v[0]), "one for all"),
+    ("mass", lambda u, v, a, b: 2600.0 * (inner(u, v) + inner(a, b)), r"times u \. v"),
+    (
+        "damping",
+        lambda u, v, a, b: 1e-4 * SHEAR * inner(a, b),
+        "a time constant, not below 0, times",
+    ),
+    ("damping", lambda u, v, a, b: 1e3 * inner(u, v), "a time constant, not below 0, times"),
+]
 
 
 PULSE = {"direction": [0.0, 1.0], "period": 1e-3, "amplitude": 0.1}
@@ -116,8 +157,9 @@ REFUSED = [
     (same, FROM_BELOW | {"waves": [PULSE | {"kind": "P", "shape": "ricker"}]}, "waves enter from"),
     (same, FROM_BELOW | {"loads": [PULSE | BASE]}, "a compliant base"),
     (undamped, {"loads": [PUSH], "damping": RAYLEIGH}, r"damping.*Forms\.damping"),
-    (bedded_in_springs, {"loads": [PUSH]}, "strains, not of displacements"),
-    (damped_apart, {"loads": [PUSH]}, "a time constant times the stiffness"),
+    (lambda *_: None, {"loads": [PUSH]}, r"must return Forms\(mass, stiffness, damping\)"),
+    (lambda _, space: continuum.isotropic(space, 2600.0, LAME, SHEAR, -1e-6), {}, "not below 0"),
+    *((changed(name, of), {"loads": [PUSH]}, words) for name, of, words in NO_ROCK),
 ]
 
 
@@ -133,3 +175,60 @@ def test_absorbing_ends_of_pillars_are_refused(column):
             column(ends__end="quiet"),
             rock=lambda _, space: continuum.elastic(space, 2e3, lambda e: 1e9 * e, 0.1),
         )
+
+
+COLUMN = {
+    "domain": {"size": [1.0, 8.0]},
+    "loads": [PUSH | {"shape": "ricker"}],
+    "boundaries": {"left": "periodic", "right": "periodic", "bottom": "quiet"},
+    "time": {"duration": 3e-3},
+    "record": {"points": [[0.5, 2.0]]},
+}
+
+
+@pytest.mark.parametrize("name", ["modulus", "density"])
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_a_jump_at_nodes_of_faces_is_that_of_cells(name, order, rock_mass):
+    """By a condition on coordinates as by a function that is constant in each cell."""
+
+    def rock(jump):
+        def of(scene, space):
+            modulus, rho = (jump(space) if name == one else 1.0 for one in ("modulus", "density"))
+            return continuum.isotropic(space, 2600.0 * rho, LAME * modulus, SHEAR * modulus)
+
+        return of
+
+    def by_place(space):
+        return ufl.conditional(ufl.lt(ufl.SpatialCoordinate(space.mesh)[1], 4.0), 3.0, 1.0)
+
+    def by_cell(space):
+        middle = cell_corners(space.mesh).mean(axis=1)[:, 1]
+        return cell_constants(space.mesh, np.where(middle < 4.0, 3.0, 1.0)[:, None])[0]
+
+    scene = rock_mass(**COLUMN, continuum={"size": 0.5, "order": order})
+    found, known = (simulate(scene, rock=rock(jump)) for jump in (by_place, by_cell))
+    alike(found["velocity"].values, known["velocity"].values)
+
+
+def test_quiet_sides_absorb_at_the_reference_frequency(rock_mass):
+    """The same rock with a quality factor, by unrelaxed moduli."""
+    rock = {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2, "quality_factor": 10}
+    scene = rock_mass(**COLUMN, rock=rock)
+    more = mechanisms_of(scene, "jointed").unrelaxed
+
+    def unrelaxed(_, space):
+        return continuum.isotropic(space, 2600.0, LAME * more, SHEAR * more)
+
+    found, known = simulate(scene, rock=unrelaxed), simulate(scene)
+    alike(found["velocity"].values, known["velocity"].values)
+
+
+def test_cells_too_large_for_a_scripts_rock_are_warned_of(rock_mass, caplog):
+    """Elements fit the scene's rock: that of the script is a hundred times softer."""
+    scene = rock_mass(**COLUMN, continuum={"size": None, "order": 2})
+    with caplog.at_level(logging.WARNING):
+        plan_of(scene, rock=same)
+        assert not caplog.records
+        plan_of(scene, rock=lambda _, space: continuum.isotropic(space, 2600.0, 0.0, SHEAR / 100))
+    assert "rock of a script: elements at [" in caplog.text
+    assert "nodes per wavelength" in caplog.text and "numerics.continuum.size = " in caplog.text
