@@ -7,13 +7,14 @@ The f-k spectrum is that of a row of receivers at any distances x_j with the spe
 1 where all of the motion is one wave of this wavenumber; the speed is 2 pi f over the k of its peak
 (Capon, Proc. IEEE 57, 1969, the conventional estimate).
 
-In an endless pillar with a joint every d, with e^{i (omega t - k y)} and the joints' eta:
+In an endless pillar with a joint every d, with e^{i (omega t - k y)}, the joints' eta, and
+w^2 = omega^2 - i alpha omega of damping alpha by mass:
 
-    rigid blocks   sin(k d / 2) = (omega d / 2 c) / sqrt(1 + i omega eta)     (Brillouin 1946)
-    jointed rock   cos(k d) = cos(q d) - omega z / (2 K (1 + i omega eta)) sin(q d),
-                   q = omega / sqrt(E (1 + i omega eta) / rho), z = rho omega / q
+    rigid blocks   sin(k d / 2) = (w d / 2 c) / sqrt(1 + i omega eta)     (Brillouin 1946)
+    jointed rock   cos(k d) = cos(q d) - rho w^2 / (2 q K (1 + i omega eta)) sin(q d),
+                   q = w / sqrt(E (1 + i omega eta) / rho)
                    (Brekhovskikh 1980, with Schoenberg's joint, JASA 68, 1980)
-    bar            k = (omega / c) / sqrt(1 + i omega eta)
+    bar            k = (w / c) / sqrt(1 + i omega eta)
 """
 
 from collections.abc import Sequence
@@ -21,6 +22,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from jointwave.cases.effects import off_axis
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
@@ -72,28 +74,37 @@ def dispersion(
 
 
 def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
-    """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] along an endless
-    pillar of a scene's ordinary joints.
+    """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] of waves along an
+    endless pillar of a scene's ordinary joints.
 
     rock : "rigid blocks" of rock without a quality factor, "bar" and, where the scene gives
     intact_modulus, "jointed rock". frequency : Hz. Where waves do not pass, the attenuation says
-    so. Raises SceneError of a pillar with segments.
+    so. Raises SceneError of segments and random joints, motion across the axis, joints that
+    stiffen, and local damping.
     """
     pillar = pillar_of(load(scene), "dispersion_theory")
-    if pillar.segments:
-        raise SceneError(pillar.where, "segments", None, "give each rock in its own scene")
+    for key, there, allowed in (
+        ("segments", pillar.segments, "give each rock in its own scene"),
+        ("scatter", pillar.scatter, "random joints have no theory of dispersion"),
+        ("load", across := off_axis(pillar), f"the theory is of waves along the axis: {across}"),
+        ("joints.maximum_closure", pillar.joints.maximum_closure, "the speed depends on stress"),
+        ("damping.local", pillar.damping.local, "is not linear"),
+    ):
+        if there:
+            raise SceneError(pillar.where, key, None, allowed)
     p, omega = calibrate(pillar), 2 * np.pi * np.asarray(frequency, dtype=float)
     d, loss = p.spacing, 1 + 1j * omega * (p.time_constant or 0.0)
     rock, mass = (mechanisms_of(pillar, model) for model in ("jointed", "equivalent"))
     of_rock, of_mass = (loss if one is None else one.modulus(1j * omega) for one in (rock, mass))
-    slowness = omega / p.bar_speed / np.sqrt(of_mass)
-    k = {"bar": slowness}
+    w = np.sqrt(omega**2 - 1j * (p.mass_damping or 0.0) * omega)
+    along = w / p.bar_speed / np.sqrt(of_mass)
+    k = {"bar": along}
     if rock is None:
-        k = {"rigid blocks": 2 / d * np.arcsin(slowness * d / 2 + 0j), **k}
+        k = {"rigid blocks": 2 / d * np.arcsin(along * d / 2), **k}
     if p.intact_modulus is not None:
-        q = omega / np.sqrt(p.intact_modulus * of_rock / p.density)
-        z, K = p.density * omega / q, p.regular_own_stiffness * loss
-        cosine = np.cos(q * d) - omega * z / (2 * K) * np.sin(q * d)
+        q = w / np.sqrt(p.intact_modulus * of_rock / p.density)
+        K = p.regular_own_stiffness * loss
+        cosine = np.cos(q * d) - p.density * w**2 / (2 * q * K) * np.sin(q * d)
         k["jointed rock"] = np.arccos(cosine) / d
     found = np.array(list(k.values()))
     speed, decay = omega / np.abs(found.real), np.abs(found.imag)

@@ -5,10 +5,13 @@ speed that of the f-k spectrum of all of them (`compare.readings`), with the the
 pillar (`dispersion_theory`).
 """
 
+from contextlib import suppress
+
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from jointwave.cases.errors import SceneError
 from jointwave.compare import readings
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
@@ -71,8 +74,10 @@ def curves_of(comparison: Comparison) -> Curves:
             if (row != 0).any("time").all() and row["distance"].diff("receiver").min() > 0:
                 found[solution] = _measured(result, row)
     scene = comparison.scene
-    if found and scene.is_column and not scene.segments:
-        frequency = next(iter(found.values()))[TRANSFER].index.values
+    if not found:
+        return found
+    frequency = next(iter(found.values()))[TRANSFER].index.values
+    with suppress(SceneError):  # no theory of this scene
         theory = readings.dispersion_theory(scene, frequency)
         for rock in theory.rock.values:
             speed, quality = (theory.sel(rock=rock)[n] for n in ("phase_speed", "quality"))

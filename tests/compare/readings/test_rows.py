@@ -23,13 +23,14 @@ PASSED = 0.048  # s; nothing is back from the end at 60 m before
 
 
 @cache
-def column(period=0.01, quality=None, **joints):
+def column(period=0.01, quality=None, alpha=0.0, **joints):
     rock = {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10}
     tables = {
         "title": "a row",
         "pillar": {"length": 60.0, "side": 0.5, "block": 0.5},
         "rock": rock | ({} if quality is None else {"quality_factor": quality}),
         "joints": joints,
+        "damping": {"mass_proportional": alpha},
         "load": {"shape": "ricker", "amplitude": 1e6, "period": period},
         "time": {"duration": PASSED},
         "record": {"velocity": PLACES, "stress": [5.0, 10.0], "interval": 5e-5},
@@ -111,6 +112,38 @@ def test_rock_of_a_quality_factor_attenuates_as_its_theory():
     theory = theory.sel(rock="bar")
     assert found.attenuation.values == pytest.approx(theory.attenuation.values, abs=1e-5)
     assert found.phase_speed.values == pytest.approx(theory.phase_speed.values, rel=1e-4)
+
+
+def test_damping_by_mass_attenuates_as_its_theory():
+    """By alpha / 2 c at every frequency of a long wave: in a bar k^2 = (omega^2 - i alpha omega) /
+    c^2."""
+    scene = column(alpha=40.0)
+    found = quality_factor(solve("lattice", scene)).sel(frequency=slice(60, 180))
+    theory = dispersion_theory(scene, found.frequency.values)
+    blocks = theory.sel(rock="rigid blocks")
+    assert found.attenuation.values == pytest.approx(blocks.attenuation.values, rel=2e-3)
+    assert found.phase_speed.values == pytest.approx(blocks.phase_speed.values, rel=1e-4)
+    omega, c = 2 * np.pi * found.frequency.values, calibrate(scene).bar_speed
+    k = np.sqrt(omega**2 - 40j * omega) / c
+    assert theory.attenuation.sel(rock="bar").values == pytest.approx(-k.imag, rel=1e-12)
+    slow = dispersion_theory(scene, [5.0])
+    assert slow.attenuation.values.ravel() == pytest.approx(float(slow.attenuation[0, 0]), rel=1e-4)
+    assert slow.phase_speed.values.ravel() == pytest.approx(float(slow.phase_speed[0, 0]), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "changes, words",
+    [
+        ({"load": {"shape": "step", "amplitude": 1e6, "direction": [1, 0, 0]}}, "load: .* axis"),
+        ({"damping": {"local": 0.1}}, "damping.local: is not linear"),
+        ({"joints": {"maximum_closure": 1e-4}}, "depends on stress"),
+        ({"scatter": {"spacing": 0.1, "seed": 1}}, "scatter: random joints"),
+    ],
+)
+def test_what_has_no_theory_of_dispersion_is_refused(changes, words):
+    tables = column().model_dump(exclude_unset=True, exclude_none=True)
+    with pytest.raises(SceneError, match=words):
+        dispersion_theory(tables | changes, [50.0])
 
 
 @pytest.mark.parametrize(
