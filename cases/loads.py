@@ -106,6 +106,29 @@ def with_load_itself(
     return found
 
 
+def with_walls(waves: dict[str, Any], scene: Scene, times: np.ndarray) -> dict[str, Any]:
+    """Return waveforms of rigid blocks with the motion before fixed ends: linear from the middle of
+    the end block to the wall.
+
+    waves : velocity, displacement and rotation [receiver, n], or along the axes [receiver, n, 3],
+    of which those beyond the middles of the end blocks are these blocks' own.
+    """
+    centres, walls = calibrate(scene).centre_y[[0, -1]], (0.0, scene.pillar.length)
+    base = velocity_of(scene.load, scene.load.amplitude if scene.shakes_base else 0.0)
+    found = dict(waves)
+    for (_, kind), wall, centre, moves in zip(scene.ends, walls, centres, (1.0, 0.0), strict=True):
+        share = np.clip((np.array(scene.record.velocity) - centre) / (wall - centre), 0.0, 1.0)
+        if kind != "fixed" or not share.any():
+            continue
+        for name, history in {"velocity": base.value, "displacement": base.impulse}.items():
+            axes = scene.load.direction[1] if found[name].ndim == 2 else scene.load.direction
+            moved = np.multiply.outer(moves * history(times), axes)
+            found[name] = found[name] + np.multiply.outer(share, moved)
+        for name in {*found} & {"velocity", "displacement", "rotation"}:
+            found[name] = found[name] - (share * waves[name].T).T
+    return found
+
+
 def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
     """Return the displacement of the base that a pulse shakes in each step [n dt, (n + 1) dt],
     n = 0 .. count - 1, m.

@@ -1,6 +1,7 @@
 """Warnings of likely mistakes in a pillar, one line each."""
 
 from collections.abc import Iterator
+from math import pi
 from typing import Any
 
 from jointwave.cases.effects import bends
@@ -12,6 +13,7 @@ from jointwave.cases.warnings.sources import of_resolution, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
+MOST_AT_ENDS = 0.05  # of the same wave, between the face of an end block and its middle
 ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
 
 
@@ -103,4 +105,31 @@ def _of_receivers_at_joints(scene: Scene) -> Iterator[str]:
                 )
 
 
-RULES = (_of_poisson, _of_wavelength, _of_quiet_ends, _of_receivers_at_joints)
+def _of_receivers_at_ends(scene: Scene) -> Iterator[str]:
+    """Warn of velocities beside ends that waves deform, where rigid blocks do not."""
+    wave, p, load = shortest_wave(scene, calibrate(scene)), calibrate(scene), scene.load
+    sheared, walls = load.is_across or load.arm is not None, (0.0, scene.pillar.length)
+    for (end, kind), wall, centre, rock in zip(
+        scene.ends, walls, p.centre_y[[0, -1]], (p.at_start, p.at_end), strict=True
+    ):
+        if wave is None or kind == "fixed" or (kind, end) == ("free", "end"):
+            continue
+        half = rock.wall_shear_stiffness if sheared else rock.wall_stiffness
+        impedance = rock.shear_impedance if sheared else rock.impedance
+        off = 2 * pi * wave.frequency * impedance / half
+        for y in scene.record.velocity if off > MOST_AT_ENDS else ():
+            if abs(y - wall) < (1 - ON_JOINT) * abs(centre - wall):
+                yield (
+                    f"record.velocity = {y:g} m lies in the last half block before the {end}: "
+                    f"rigid blocks move there as in their middle, at {centre:.4g} m, "
+                    f"{off:.2g} off at {wave.frequency:.4g} Hz"
+                )
+
+
+RULES = (
+    _of_poisson,
+    _of_wavelength,
+    _of_quiet_ends,
+    _of_receivers_at_joints,
+    _of_receivers_at_ends,
+)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.loads import with_load_itself
+from jointwave.cases.loads import with_load_itself, with_walls
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import Interpolation, interpolation
 from jointwave.cases.schema.scene import Scene
@@ -55,7 +55,7 @@ class Sections(NamedTuple):
             scene,
             "dem",
             time.times[:count],
-            **waveforms(self, system, samples),
+            **with_walls(waveforms(self, system, samples), scene, time.times[:count]),
             **ledger_of(system, samples),
             scheme=scene.numerics.dem.scheme,
             force_evaluations=max(1, system.model.form.stages - 1) * time.steps,

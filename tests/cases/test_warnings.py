@@ -240,6 +240,20 @@ def test_intact_rock_in_gigapascal_is_told_so_where_it_is_refused(scene_with):
         scene_with(**{"rock.intact_modulus": 86.4})
 
 
+def test_velocities_beside_ends_that_waves_deform_are_those_of_end_blocks(scene_with):
+    """By omega Z / k over the half block: of a wall and a free end nothing or little."""
+    for changes, warned in (
+        ({}, [0, 0.1]),
+        ({"ends.end": "matched"}, [0, 0.1, 50]),
+        ({"ends.end": "fixed"}, [0, 0.1]),
+        ({"rock": BAR["rock"] | {"intact_modulus": 8.64e10}}, []),
+    ):
+        places = {"record.velocity": [0.0, 0.1, 0.25, 49.75, 50.0], "record.stress": []}
+        found = lines(scene_with(**BAR | places | changes), "record.velocity")
+        said = [f"record.velocity = {y:g} m lies in the last half block" for y in warned]
+        assert [line.split(" before")[0] for line in found] == said
+
+
 def test_quiet_ends_reflect_on_rigid_blocks_unless_a_source_asks_for_them(scene_with):
     """tan(k d / 4), sin(k d / 2) = pi f d / c: at 1.494 / 0.02 s = 74.7 Hz, of 1000 m/s."""
     quiet = BAR | {"ends.end": "quiet"}

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from jointwave import load, misfit, simulate
+from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from tests.field_cases.scenes import ENGINES, mass
 
@@ -38,6 +39,28 @@ def test_blocks_on_a_wall_tend_to_the_jointed_bar():
     assert far[1] < 2e-3 and far[0] / far[1] > 3.5
     assert misfit(run("continuum-jointed"), bar) < 1e-4
     assert misfit(blocks, run("lattice")) < 1e-4
+
+
+@pytest.mark.parametrize("across", [False, True])
+def test_motion_at_a_wall_is_the_walls(across):
+    """Of blocks that carry all compliance in their joints the first centre lags by w d / 2 c."""
+    wave = {"shape": "ricker", "amplitude": 0.1, "period": 0.02, "quantity": "velocity"}
+    changes = {
+        "rock.intact_modulus": 4.5e9, "motion.rotation": "none", "time.duration": 0.06,
+        "load": wave | {"direction": [0.6, 0.8, 0.0] if across else [0.0, -1.0, 0.0]},
+        "ends": {"start": "fixed", "end": "fixed"}, "record": {"velocity": [0.0, 0.125, 0.25, L]},
+    }  # fmt: skip
+    blocks = run("dem", **changes)
+    base, t = velocity_of(load(PILLAR, changes=changes).load, 0.1), blocks.time.values
+    for name, history in (("velocity", base.value(t)), ("displacement", base.impulse(t))):
+        moved = blocks[name].transpose("velocity_y", "axis", "time").values
+        expected = np.outer(changes["load"]["direction"] if across else [-1.0], history)
+        assert moved[0] == pytest.approx(expected, abs=1e-12)
+        assert not moved[3].any()
+        assert moved[1] == pytest.approx((moved[0] + moved[2]) / 2, abs=1e-12)
+        assert np.abs(moved[2] - moved[0]).max() > 0.1 * np.abs(moved[0]).max()
+    exact = run("spatial-lattice" if across else "lattice", **changes)
+    assert misfit(blocks, exact) < 1e-4
 
 
 @pytest.mark.parametrize("solver", ENGINES)

@@ -24,6 +24,7 @@ import xarray as xr
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import Step
+from jointwave.cases.loads import with_walls
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
@@ -102,7 +103,8 @@ def solve(scene: Scene) -> xr.Dataset:
         about["known_until"] = float(times[known - 1])
     found, twin = (receivers(scene, one, x) for x in states)
     errors = {key: bound(x[..., :known], twin[key][..., :known]) for key, x in found.items()}
-    about |= {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
+    waves = {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
+    about |= with_walls(waves, scene, times)
     return dataset(scene, name, times, errors=errors, **about)
 
 
@@ -135,7 +137,7 @@ def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
     [n, m]; in space these along each axis [receivers, 3, n], shear and rotation (rad).
 
     Stress is interpolated between the start, the contacts and the end; velocity and displacement
-    between the block centres.
+    between the block centres, beyond which they are those of the end blocks.
     """
     (sections, points), c = reads(scene), len(own_freedoms(scene))
     forces = contact_forces(one, states, drive(scene).value(sample_times(scene)))
