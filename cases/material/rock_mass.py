@@ -52,8 +52,9 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
 
 def refuse_beyond_strength(scene: AnyScene) -> None:
     """Raise SceneError where a joint opens or slides under the prestress: the scene would not start
-    in equilibrium."""
-    for one in scene.joint_sets if scene.prestress is not None else ():
+    in equilibrium. Under weight the static state says whether it does."""
+    weighed = scene.gravity is not None and scene.gravity.static
+    for one in scene.joint_sets if scene.prestress is not None and not weighed else ():
         if what := beyond_strength(one, scene.prestress.tensor):  # type: ignore[union-attr]
             allowed = f"exceeds the strength of a joint: '{one.name}' {what} under it"
             raise SceneError(scene.where, "prestress", None, allowed)

@@ -18,9 +18,11 @@ def warnings(scene: AnyScene) -> list[str]:
         from jointwave.cases.warnings import rock_mass as own  # with shapely
     found = [*implausible(scene), *of_sources(scene, **own.met(scene))]
     found += [line for rule in own.RULES for line in rule(scene)]
-    if scene.damping.local and any(one.amplitude for one in scene.pulses):
+    falls = scene.gravity is not None and not scene.gravity.static
+    if (local := scene.damping.local) and (falls or any(one.amplitude for one in scene.pulses)):
         found.append(
-            "damping.local distorts waves: it is meant for static states, not for a scene with a "
-            "load"
+            f"damping.local distorts waves and slows what slides or falls to {1 - local:.3g} of "
+            "its acceleration: it is meant for static states, not for a scene with a load or "
+            "sudden gravity"
         )
     return found

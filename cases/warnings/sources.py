@@ -45,8 +45,11 @@ def of_sources(
     for table, pulse in scene.sources.items():
         if not pulse.amplitude:
             continue
-        frequency, held = frequency_of(pulse, end), scene.sides.get(pressed.get(table, ""))
-        yield from _of_pulse(table, pulse, end, crossings / frequency if frequency else nan)
+        held = scene.sides.get(pressed.get(table, ""))
+        frequency = frequency_of(pulse, end)
+        if not frequency or scene.gravity is not None:  # what stands by its weight sways slowly
+            frequency = nan
+        yield from _of_pulse(table, pulse, end, crossings / frequency)
         if pulse.shape == "step" and block is not None:
             yield (
                 f"{table}.shape = 'step': blocks of {block:.3g} m overshoot behind its front "

@@ -182,8 +182,8 @@ class _Static:
 
         def correction(rest: np.ndarray) -> np.ndarray:
             matrix = self.matrix + drag * diags(own.mass)
-            if not trial.any():  # rock at rest on joints without friction could be anywhere
-                return own.factors(matrix + self.sticking).solve(rest)
+            if not trial.any():  # first as if no joint opened or slid: then what stands is found
+                return own.factors(matrix + self.sticking).solve(share * own.steady[free])
             tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
             return own.factors(matrix, tangents).solve(rest)
 

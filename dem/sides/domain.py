@@ -28,8 +28,7 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
 
     Raises SceneError for a stress that joints which must hold cannot carry.
     """
-    if scene.gravity is None or not scene.gravity.static:
-        refuse_beyond_strength(scene)
+    refuse_beyond_strength(scene)
     quiet = points_on(cut, facets_on(cut, sides, scene.boundaries.sides("quiet")))
     impedance = impedances(scene, quiet.normal, cut.body.region[quiet.block])
     patterns = [load_pattern(scene, cut, sides, one) for one in scene.pushes]

@@ -87,6 +87,22 @@ def test_gravity_that_acts_suddenly_reaches_everything(mass):
     assert warnings(mass(time__duration=0.008, gravity={"static": False})) == []
 
 
+def test_local_damping_slows_what_slides_under_sudden_gravity(mass):
+    rests = {"waves": [], "damping__local": 0.8, "boundaries": {"bottom": "fixed"}}
+    assert warnings(mass(**rests, gravity={})) == []
+    (line,) = warnings(mass(**rests, gravity={"static": False}))
+    assert "slows what slides or falls to 0.2 of its acceleration" in line
+
+
+def test_what_stands_by_its_weight_may_sway_slowly(mass):
+    """At 2 s: a wave crosses 30 m of rock 200 times in them; without weight they were to be ms."""
+    sways = {"waves": [], "boundaries": {"bottom": "fixed"}, "time__duration": 4.0}
+    sways["loads"] = [SHAKEN | {"period": 2.0, "amplitude": 0.1}]
+    assert warnings(mass(**sways, gravity={})) == []
+    (line,) = warnings(mass(**sways))
+    assert "2 ms is 0.002 s" in line
+
+
 BOX = {"size": [20.0, 30.0, 4.0]}
 BESIDE = {"domain": BOX, "record": {"points": [[10.0, 25.0, 1.5]]}, "joint_sets": []}
 UP = {"kind": "P", "direction": [0.0, 0.0, 1.0], "shape": "step", "amplitude": 1e6}

@@ -64,6 +64,25 @@ def test_a_ledger_that_is_open_says_by_how_much():
     assert lost > MOST_OPEN and f"open by {lost:.2g} of its largest term" in said
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_ledger_of_what_stays_at_rest_is_closed(engine):
+    """A leaning stack of blocks about to topple: 4 J of its joints, and rock of 5e10 Pa that turns
+    with them."""
+    law = {"normal_stiffness": 1e12, "shear_stiffness": 1e12, "friction_angle": 45.0}
+    lean = np.array([0.97 / 5, -1.0]) / np.hypot(0.97 / 5, 1.0)
+    stack = mass(
+        *(1.0, 6.0),
+        joint_sets=[law | {"name": "bed", "dip": 0.0, "spacing": 1.0, "tension": False}],
+        gravity={"direction": lean.tolist()},
+        boundaries={"bottom": "fixed"},
+        time={"duration": 0.01},
+        record={"points": [[0.5, 5.5]]},
+        numerics={"continuum": {"size": 0.25}},
+    )
+    found = jw.simulate(jw.load(stack), engine)
+    assert open_ledger(found) == "" and energy_residual(found) < MOST_OPEN
+
+
 def test_a_run_warns_of_an_open_ledger(jointwave, in_toml, tmp_path):
     """Implicit steps of much damping at few steps a period take more than any term accounts for."""
     tables = rock({}, np.random.default_rng(0), 0.5)

@@ -130,6 +130,36 @@ def test_a_joint_below_its_strength_holds_for_ten_seconds(engine):
     assert np.abs(slip[slip.size // 2 :] - slip[-1]).max() < 1e-12 * exact
 
 
+@pytest.mark.parametrize("friction", [12.0, 30.0])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_joint_that_the_weight_presses_bears_an_in_situ_stress_that_it_could_not_alone(
+    engine, friction
+):
+    """Horizontal stress s in rock that is free beside and above: a joint at 10 degrees and at the
+    depth h, which slides under s alone, bears the traction of s and rho g h, 3.8 degrees off its
+    normal. It is stiff, so that the rock's own deformation puts little on it."""
+    law = {"friction_angle": friction, "tension": False, "dip": 10.0, "through": [5.0, 5.0]}
+    law |= {"name": "joint", "normal_stiffness": 1e13, "shear_stiffness": 1e13}
+    tables = mass(
+        *(10.0, 40.0),
+        rock={"density": 2500.0, "intact_modulus": 4e10, "intact_poisson": 0.0},
+        joint_sets=[law],
+        prestress={"xx": 1.2e6, "yy": 0.0},
+        boundaries={"bottom": "fixed"},
+        time={"duration": 1e-3},
+        record={"points": [[5.0, 30.0]], "joints": [[5.0, 5.0]], "interval": 1e-4},
+        numerics={"continuum": {"size": 5.0}, "dem": {"static_tolerance": 1e-11}},
+    )
+    with pytest.raises(SceneError, match="'joint' slides under it"):
+        jw.simulate(jw.load(tables), engine)
+    found = jw.simulate(jw.load(tables | {"gravity": {}}), engine)
+    dip, stress = radians(10.0), np.array([1.2e6, 2500.0 * G * 35.0])
+    normal = np.array([-sin(dip), cos(dip)])
+    exact = [stress * normal @ normal, stress * normal @ [cos(dip), sin(dip)]]
+    assert np.abs(found.traction.values[0, 0]) == pytest.approx(np.abs(exact), rel=1e-5)
+    assert moved(found, "velocity") < 10 * STILL
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_block_above_its_friction_angle_slides_as_coulomb_says(engine):
     """Gravity at once: once the block moves, its speed grows at g (sin 20 - cos 20 tan 19) =
