@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import NO_SET, OUTSIDE, Complex, Sliver
-from jointwave.cases.geometry.relations import Lookup, composed, distinct, ranges
+from jointwave.cases.geometry.relations import Lookup, composed, counted, distinct, ranges
 
 GRAZING = "joints meet at a grazing angle"
 
@@ -204,7 +204,7 @@ class _Work:
         wrong = np.flatnonzero(times != 2 if k == 2 else times < 3)
         if not len(wrong) and k == 3:
             ends = composed(bound, self.rows[1])[0]
-            keys, count = np.unique(ends, axis=0, return_counts=True)
+            keys, count = counted(ends)
             wrong = keys[count != 2, 0]
         if len(wrong):
             raise self._grazing(k, self.crossed[k][wrong[0], 0])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import Complex, Halves
-from jointwave.cases.geometry.relations import composed, distinct, sums
+from jointwave.cases.geometry.relations import composed, counted, distinct, sums
 
 LEVEL = 1e-9  # of a unit normal: a component below it is round-off
 
@@ -149,7 +149,7 @@ def outlines(
     """
     pairs = np.stack([group, facets], axis=1)
     if body.dim > 1:
-        pairs, times = np.unique(composed(pairs, body.bounds[-1])[0], axis=0, return_counts=True)
+        pairs, times = counted(composed(pairs, body.bounds[-1])[0])
         pairs = pairs[times == 1]
         for bound in reversed(body.bounds[:-1]):
             pairs = distinct(composed(pairs, bound)[0])

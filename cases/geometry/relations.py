@@ -28,12 +28,16 @@ def composed(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return np.stack([one[which, 0], other[at, 1]], axis=1), which
 
 
+def counted(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs in order, each once, and how often it is among them."""
+    width = pairs[:, 1].max(initial=0) + 1
+    keys, times = np.unique(pairs[:, 0] * width + pairs[:, 1], return_counts=True)
+    return np.stack(np.divmod(keys, width), axis=1), times
+
+
 def distinct(pairs: np.ndarray) -> np.ndarray:
     """Return pairs in order, each once."""
-    if not len(pairs):
-        return pairs
-    width = pairs[:, 1].max() + 1
-    return np.stack(np.divmod(np.unique(pairs[:, 0] * width + pairs[:, 1]), width), axis=1)
+    return counted(pairs)[0]
 
 
 def sums(of: np.ndarray, x: np.ndarray, number: int) -> np.ndarray:

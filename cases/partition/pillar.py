@@ -51,8 +51,8 @@ def blocks_of_pillar(
     inner, joint_set = body.inner, body.joint_set.copy()
     joint_set[inner] = law[body.sides[inner].min(axis=1)]
     side = np.full(len(body.sides), 2)
-    place = body.means(body.corners_of_facets(), len(side))[:, along]
-    side[[place.argmin(), place.argmax()]] = 0, 1
+    ends = np.flatnonzero(~inner & (np.abs(body.normals[body.plane, along]) > 0.5))
+    side[ends[np.argsort(body.sides[ends].max(axis=1))]] = 0, 1
     body = replace(body, joint_set=joint_set, region=region, side=side)
     return blocks_of(body, tolerance, in_rows=False)
 
