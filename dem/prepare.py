@@ -78,7 +78,7 @@ def clock_of(blocks: RigidBlocks) -> Clock:
     fit in memory."""
     scene, numerics, dim = blocks.scene, blocks.scene.numerics.dem, blocks.dim
     time = clock(scene, blocks.critical, numerics.step_fraction, numerics.allow_unstable, "dem")
-    of_block = OF_BLOCK[dim] + OF_POINT * form_of(blocks).points * (dim > 1)
+    of_block = OF_BLOCK[dim] + OF_POINT * blocks.points.shape[1] * (dim > 1 and blocks.has_points)
     parts = {
         blocks.counted_by: of_block * blocks.count,
         "record.interval": waveform_bytes(scene, dim > 1),

@@ -83,7 +83,8 @@ def start(system: BlockSystem, state: State) -> Rest | None:
             rows, kept = form.history, form.history.jump
             state.history[:, kept:] = relaxation.state.history[:, kept:]
             if form.parts.softening:  # what has broken here, broke before the run
-                for first in range(rows.points + form.point.whole, rows.size, form.point.size):
+                size = state.history.shape[1]
+                for first in range(rows.size + form.point.whole, size, form.point.size):
                     state.history[:, first : first + LANES] = 0.0
         if static and bears:
             system.loads.add_steady(relaxation.borne())

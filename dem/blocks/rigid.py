@@ -154,7 +154,7 @@ def form_of(blocks: RigidBlocks) -> KernelFlags:
         dim=dim,
         turns=blocks.masses.shape[1] > dim,
         parts=parts_of(own.law)._replace(planar=dim == 2),
-        points=blocks.points.shape[1] if blocks.has_points else 0,
+        points=blocks.has_points,
         mass_damping=scene.damping.alpha is not None,
         local_damping=bool(scene.damping.local),
         gravity=scene.gravity is not None,

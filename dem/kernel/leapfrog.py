@@ -167,7 +167,7 @@ def widths_of(form: KernelFlags) -> tuple[int, ...]:
     damped = form.mass_damping or form.local_damping
     return (
         lanes, lanes, lanes * (parts.dashpots or damped),
-        lanes * (form.points > 0 and form.dim > 1), lanes * parts.softening, held,
+        lanes * (form.points and form.dim > 1), lanes * parts.softening, held,
         int(form.gravity), lanes if form.shaken else held,
     )  # fmt: skip
 

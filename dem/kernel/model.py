@@ -24,21 +24,21 @@ def rows(**sizes: int) -> Any:
 class KernelFlags(NamedTuple):
     """The effects of a system of blocks: compile-time constants of its kernel.
 
-    dim : 1, 2 or 3. turns : whether blocks rotate. parts : of the joint law. points : points of a
-    contact; 0 where joints always hold, which need none. mass_damping, local_damping, gravity : of
-    the blocks. held : whether some blocks have dashpots of their own, or forces; matched : dashpots
-    behind springs. ledger : whether energies are kept. stressed : whether contacts start under a
-    traction. shaken : whether walls move. relaxed : whether the same kernel brings the blocks to
-    rest first, for which it can damp their motion, without a place in the ledger. in_row : whether
-    contacts mostly join block after block. oblique : whether rotations of a block have inertia in
-    common. stages : of a step, 1 of leapfrog. finite : whether blocks in space turn by any angle;
-    their contacts then have points.
+    dim : 1, 2 or 3. turns : whether blocks rotate. parts : of the joint law. points : whether
+    contacts have points; joints that always hold need none. mass_damping, local_damping, gravity :
+    of the blocks. held : whether some blocks have dashpots of their own, or forces; matched :
+    dashpots behind springs. ledger : whether energies are kept. stressed : whether contacts start
+    under a traction. shaken : whether walls move. relaxed : whether the same kernel brings the
+    blocks to rest first, for which it can damp their motion, without a place in the ledger.
+    in_row : whether contacts mostly join block after block. oblique : whether rotations of a block
+    have inertia in common. stages : of a step, 1 of leapfrog. finite : whether blocks in space turn
+    by any angle; their contacts then have points.
     """
 
     dim: int
     turns: bool
     parts: LawFlags
-    points: int
+    points: bool
     mass_damping: bool
     local_damping: bool
     gravity: bool
@@ -72,7 +72,7 @@ class KernelFlags(NamedTuple):
     def rated(self) -> bool:
         """Whether forces or the ledger need rates of relative motion."""
         p = self.parts
-        return p.dashpots or (self.points > 0 and (self.ledger or p.path))
+        return p.dashpots or (self.points and (self.ledger or p.path))
 
     @property
     def drags(self) -> bool:
@@ -98,8 +98,8 @@ class KernelFlags(NamedTuple):
         centroids to the centre of the face, m. area : m2. extent : how far block j reaches behind
         the centre of the face and along its tangents, m, where points may leave it. start : gap and
         slip that stand for what a contact carries at first, m. second : second moments along the
-        first tangent, along the second, and mixed, m4. point : place in the face, m, and area of
-        each point.
+        first tangent, along the second, and mixed, m4. Then place in the face, m, and area of each
+        point, `dim` rows.
         """
         dim, arms = self.dim, self.dim * self.turns
         return rows(
@@ -110,7 +110,6 @@ class KernelFlags(NamedTuple):
             extent=dim * self.finite,
             start=dim * self.stressed,
             second=dim * (dim - 1) // 2 * (self.turns and not self.points),
-            point=dim * self.points,
         )
 
     @property
@@ -146,15 +145,14 @@ class KernelFlags(NamedTuple):
         """Rows of what contacts remember.
 
         rate : of relative motion one and a half steps before. drag : the dashpots' force and moment
-        at the last step. jump : relative motion at the last step, with finite rotations. points :
-        what each point has, in `point`.
+        at the last step. jump : relative motion at the last step, with finite rotations. Then what
+        each point has, in `point`.
         """
         rates = self.motions * self.parts.dashpots
         return rows(
             rate=rates,
             drag=rates * self.ledger,
             jump=self.motions * (self.finite and self.rated),
-            points=self.points * self.point.size // LANES,
         )
 
     @property
@@ -228,6 +226,11 @@ class Model(NamedTuple):
     walls: int = 0
 
     @property
+    def points(self) -> int:
+        """Points of a contact; 0 where joints always hold."""
+        return (self.chunks.table.shape[1] - self.form.table.size) // (LANES * self.form.dim)
+
+    @property
     def inertia(self) -> np.ndarray:
         """Momenta over what the state has as velocities [N, freedoms]."""
         found = self.blocks.inertia
@@ -289,13 +292,13 @@ def held_by(
 def state_at_rest(model: Model) -> State:
     """Return the state at rest, without arrays for absent effects."""
     form, pair = model.form, model.chunks.pair
-    count, size, history = len(model.blocks.inertia) + model.walls, form.history.size, None
-    if size:
+    count, history = len(model.blocks.inertia) + model.walls, None
+    if size := form.history.size + model.points * form.point.size:
         history = zeros((len(pair), size))
         if form.parts.residual:
             cohesion = model.laws[Law._fields.index("cohesion")]
             own = cohesion[pair[:, 2 * LANES :] if form.parts.varied else 0]
-            for first in range(form.history.points + form.point.cohesion, size, form.point.size):
+            for first in range(form.history.size + form.point.cohesion, size, form.point.size):
                 history[:, first : first + LANES] = own
     return State(
         u=zeros((count, form.freedoms)),

@@ -19,14 +19,14 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
     record : the formula that samples a chunk's.
     """
     parts, has_ledger, stressed, drags = form.parts, form.ledger, form.stressed, form.drags
-    fails, traction, shaken = form.points > 0, traction_for(form.parts), form.shaken
+    fails, traction, shaken = form.points, traction_for(form.parts), form.shaken
     dashpots, softening, varied, used = (
         parts.dashpots, parts.softening, parts.varied, rows_of(form.parts)
     )  # fmt: skip
     AREA, START, LAW, JUMP, FORCE = (
         form.table.area, form.table.start, form.buffer.law, form.buffer.jump, form.buffer.force
     )  # fmt: skip
-    RATE, DRAG, POINTS = form.history.rate, form.history.drag, form.history.points
+    RATE, DRAG, POINTS = form.history.rate, form.history.drag, form.history.size
     OPENING, WHOLE = POINTS + form.point.opening, POINTS + form.point.whole
 
     @formula

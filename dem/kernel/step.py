@@ -58,13 +58,14 @@ def step_for(form: KernelFlags) -> Callable:
     dim, freedoms, has_ledger, shaken = form.dim, form.freedoms, form.ledger, form.shaken
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
     matched = form.matched
-    remembers, recorded, used = form.history.size > 0, form.recorded, rows_of(form.parts)
+    recorded, used, past = form.recorded, rows_of(form.parts), form.history
+    remembers = past.size > 0 or (form.points and form.point.size > 0)
     stages, composed, row = form.stages, form.stages > 1, form.dim == 1
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
     finite, motions, FRAME = form.finite, form.motions, form.table.frame
     rows, LAST_RATE, LAST_DRAG, LAST_JUMP = (
-        form.buffer, form.history.rate, form.history.drag, form.history.jump
+        form.buffer, past.rate, past.drag, past.jump
     )  # fmt: skip
     LAW, JUMP, RATE, NOW, FORCE, DRAG, ON_J = (
         rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.drag, rows.on_j

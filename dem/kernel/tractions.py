@@ -19,9 +19,7 @@ def add(q, row, value):
 
 def point_forces_for(form: KernelFlags) -> Callable:
     """Return the formula of the forces at the points of contacts, by the whole law."""
-    parts, points, dim, turns, stressed = (
-        form.parts, form.points, form.dim, form.turns, form.stressed
-    )  # fmt: skip
+    parts, dim, turns, stressed = form.parts, form.dim, form.turns, form.stressed
     dashpots, varied, has_ledger, finite = parts.dashpots, parts.varied, form.ledger, form.finite
     softening, residual, path_dependent = parts.softening, parts.residual, parts.path
     traction = traction_for(parts)
@@ -29,9 +27,9 @@ def point_forces_for(form: KernelFlags) -> Callable:
     LAW, JUMP, RATE, NOW, FORCE, DRAG = (
         rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.drag
     )  # fmt: skip
-    START, POINT, EXTENT = form.table.start, form.table.point, form.table.extent
+    START, POINT, EXTENT = form.table.start, form.table.size, form.table.extent
     PAST, OPENING, WHOLE, COHESION, PATH, past_rows = (
-        form.history.points, past.opening, past.whole, past.cohesion, past.path, past.size
+        form.history.size, past.opening, past.whole, past.cohesion, past.path, past.size
     )  # fmt: skip
     END = rows.on_j
 
@@ -126,7 +124,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
         common = law_of(laws, 0)
         for c in range(FORCE, END):
             q[c] = 0.0
-        for p in range(points):
+        for p in range((k.size - POINT) // (dim * L)):
             own, before = POINT + p * dim * L, PAST + p * past_rows
             for c in range(L):
                 law = law_at(q, LAW + c, L) if varied else common

@@ -182,7 +182,7 @@ def break_times(system: BlockSystem, state: State) -> np.ndarray:
     all its contact points are."""
     form, chunks, time = system.model.form, system.model.chunks, system.time
     rows, place = form.point, chunks.place[: system.blocks.count - 1]
-    points = form.history.points + rows.size * np.arange(form.points) + place[:, None] % LANES
+    points = form.history.size + rows.size * np.arange(system.model.points) + place[:, None] % LANES
     own = state.history[place // LANES]
     opening, whole = (
         np.take_along_axis(own, points + row, axis=1) for row in (rows.opening, rows.whole)

@@ -67,7 +67,7 @@ def blocks_of(turned=None, dashpots=0.0, held=None, **strengths):
     tensor = np.tile(axes @ np.diag(moments) @ axes.T, (12, 1, 1))
     inertia = np.column_stack([np.full((12, 3), mass), np.diagonal(tensor, axis1=1, axis2=2)])
     form = KernelFlags(
-        3, True, parts_of(own), 4, False, False, False, True, True, oblique=True, finite=True
+        3, True, parts_of(own), True, False, False, False, True, True, oblique=True, finite=True
     )  # fmt: skip
     chunks = chunks_of(faces, 12, 6, extent=extents(faces, points, 12), points=points)
     masses = np.zeros((12, 6, 6))

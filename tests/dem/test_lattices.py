@@ -53,7 +53,7 @@ def lattice(dim, points):
     shear = np.full(len(normals), SHEAR)
     own = law(stiffness, None, np.ones(len(normals), dtype=bool), shear_stiffness=shear)
     parts, none = parts_of(own)._replace(planar=dim == 2), np.zeros(0, dtype=int)
-    form = KernelFlags(dim, True, parts, len(rule) * points, False, False, False, False, False)
+    form = KernelFlags(dim, True, parts, points, False, False, False, False, False)
     mass = DENSITY * SIDE**dim
     inertia = np.tile([mass] * dim + [mass * SIDE**2 / 6] * form.rotations, (count**dim, 1))
     moments = [second] if dim == 2 else [second, second, 0.0]
