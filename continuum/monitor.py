@@ -117,7 +117,7 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
     body, scene, joints = found.body, found.scene, found.body.joints
     if joints is None or not joints.weight.size:
         return None
-    jump = (joints.matrix @ u).reshape(-1, body.components)
+    jump = joints.jumps(u)
     if scene.is_column:
         if body.components == 1:
             return None

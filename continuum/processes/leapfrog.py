@@ -42,9 +42,8 @@ class SharedLeapfrog(Leapfrog):
         self._partition = np.array([self._known])  # in checkpoints
         place = self.whole(np.arange(self.product.size)).astype(np.int64)
         remote = np.stack([of_freedom, place], axis=1)[self._share.halo].astype(PETSc.IntType)
-        leaves = np.arange(self.product.size, self.product.size + self.halo)
         self._forest = PETSc.SF().create(shared_by(comm))
-        self._forest.setGraph(self.product.size, leaves.astype(PETSc.IntType), remote)
+        self._forest.setGraph(self.product.size, self.halo.astype(PETSc.IntType), remote)
 
     @property
     def parts(self) -> tuple:

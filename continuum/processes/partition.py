@@ -64,8 +64,5 @@ def adjacent_cells(body: Body) -> np.ndarray:
         pairs.append(np.stack([at, one[body.tied]]))
         at = one
     if body.joints is not None:
-        matrix, dim = body.joints.matrix[:: body.components], body.components
-        cell = at[matrix.indices // dim]
-        first = np.repeat(cell[matrix.indptr[:-1]], np.diff(matrix.indptr))
-        pairs.append(np.stack([first, cell]))
+        pairs.append(at[body.joints.node.T])
     return np.concatenate(pairs, axis=1)

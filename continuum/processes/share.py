@@ -57,12 +57,12 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
     own, (points, counted) = np.flatnonzero(rank_of == rank), _points(problem, rank_of, rank)
     rows, joints = _freedoms(own, dim), body.joints
     if joints is not None:
-        each = (one[points] for one in joints[1:])
-        joints = JumpOperator(joints.matrix[_freedoms(points, dim)], *each)  # type: ignore[call-arg]
+        joints = JumpOperator(*(one[points] for one in joints))
     found = body.stiffness, body.damping
     matrices = [None if one is None else csr_matrix(one)[rows] for one in found]
-    every = [one for one in (*matrices, joints and joints.matrix) if one is not None]
-    halo = np.setdiff1d(np.unique(np.concatenate([one.indices // dim for one in every])), own)
+    every = [one.indices // dim for one in matrices if one is not None]
+    every += [joints.node.ravel()] if joints is not None else []
+    halo = np.setdiff1d(np.concatenate(every), own)
     number = np.full(len(rank_of), -1)
     number[np.append(own, halo)] = np.arange(len(own) + len(halo))
     freedom = np.where(number[:, None] < 0, -1, dim * number[:, None] + np.arange(dim)).ravel()
@@ -82,7 +82,7 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
         mass=body.mass[rows],
         stiffness=stiffness,  # type: ignore[arg-type]
         damping=damping,
-        joints=joints and joints._replace(matrix=local(joints.matrix)),
+        joints=joints and joints._replace(node=number[joints.node]),
         sides={},
     )
     number[halo] = freedom[_freedoms(halo, dim)] = -1
@@ -99,16 +99,12 @@ def _freedoms(nodes: np.ndarray, dim: int) -> np.ndarray:
 def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarray, int]:
     """Return the points that act on nodes of a process, first those that have no node of a lower
     one, and how many these are."""
-    joints, dim = problem.body.joints, problem.body.components
-    if joints is None:
+    if problem.body.joints is None:
         return np.zeros(0, np.int64), 0
-    entries = joints.matrix.tocoo()
-    point, of = entries.row // dim, rank_of[entries.col // dim]
-    lowest = np.full(len(joints.weight), rank_of.max() + 1)
-    np.minimum.at(lowest, point, of)
-    acts = np.unique(point[of == rank])
-    first = acts[lowest[acts] == rank]
-    return np.append(first, acts[lowest[acts] < rank]), len(first)
+    ranks = rank_of[problem.body.joints.node]
+    acts, counts = (ranks == rank).any(axis=1), ranks.min(axis=1) == rank
+    first = np.flatnonzero(acts & counts)
+    return np.append(first, np.flatnonzero(acts & ~counts)), len(first)
 
 
 def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Problem:

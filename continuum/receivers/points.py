@@ -148,11 +148,8 @@ def _patch(
 
 def nearest_points(body: Body, joints: JumpOperator, places: np.ndarray) -> np.ndarray:
     """Return the shares of joints' points at the places on joints nearest to these [r, points]."""
-    dim, shares = body.components, []
-    entries = joints.matrix[::dim].tocoo()
-    along = entries.data * joints.frame[entries.row, 0, entries.col % dim]
-    nodes, before = nodes_of_cells(body), np.empty(len(joints.weight), np.int64)
-    before[entries.row[along < 0]] = entries.col[along < 0] // dim  # that normals point away from
+    shares: list[np.ndarray] = []
+    nodes, before = nodes_of_cells(body), joints.node[:, 0]  # that normals point away from
     for place in places:
         nearest = int(np.linalg.norm(joints.place - place, axis=1).argmin())
         normal, share = joints.frame[nearest, 0], np.zeros(len(joints.weight))

@@ -151,8 +151,7 @@ class Elements:
                 closed,
                 len(i.node),
             )
-        shape = int(self.nodes.max()) + 1, self.size
-        return jump_operator(i, j, np.concatenate([one[2] for one in parts]), shape)
+        return jump_operator(i, j, np.concatenate([one[2] for one in parts]), self.size)
 
     def _sides(self) -> dict[str, Facets]:
         """Return the facets of each side that there is."""

@@ -28,24 +28,40 @@ class Forms(NamedTuple):
 
 
 class JumpOperator(NamedTuple):
-    """The joints at their points: the jump is matrix @ u, and forces are matrix.T @ (weights times
-    the tractions on block j), with block j on the side that the normal points to.
+    """The joints at their points: the jump is B u, and forces are B^T (weights times the tractions
+    on block j), with block j on the side that the normal points to.
 
     A jump is the displacement of block j less that of block i: positive along the normal where the
     joint opens.
 
-    matrix : [points * d, freedoms], B; d rows a point: along the normal, then along the joint.
-    weight : float array [points], m^(d-1). column : int array [points], of the law: the contact
-    between blocks, those across periodic sides last; of a pillar the joint. frame : float array
-    [points, d, d], unit vectors in rows: the normal, then those along the joint. place : float
-    array [points, dimensions], m, on block i.
+    node : int array [points, 2], of block i and of block j. weight : float array [points], m^(d-1).
+    column : int array [points], of the law: the contact between blocks, those across periodic sides
+    last; of a pillar the joint. frame : float array [points, d, d], unit vectors in rows: the
+    normal, then those along the joint. place : float array [points, dimensions], m, on block i.
     """
 
-    matrix: csr_matrix
+    node: np.ndarray
     weight: np.ndarray
     column: np.ndarray
     frame: np.ndarray
     place: np.ndarray
+
+    def jumps(self, u: np.ndarray) -> np.ndarray:
+        """Return the jumps of displacements [freedoms] along the frames [points, d], m."""
+        one, other = u.reshape(-1, self.frame.shape[1])[self.node.T]
+        return np.einsum("qac,qc->qa", self.frame, other - one)
+
+    def matrix(self, freedoms: int) -> csr_matrix:
+        """Return B [points * d, freedoms]."""
+        dim = self.frame.shape[1]
+        row = np.arange(self.frame[..., 0].size)
+        column = dim * self.node[:, None, :, None] + np.arange(dim)
+        value = self.frame[:, :, None] * np.array([-1.0, 1.0])[:, None]
+        column = np.broadcast_to(column, value.shape).ravel()
+        at = np.repeat(row, 2 * dim), column
+        found = csr_matrix((value.ravel(), at), (row.size, freedoms))
+        found.eliminate_zeros()
+        return found
 
     def carried(self, stress: np.ndarray) -> np.ndarray:
         """Return the tractions of a stress [d, d] on the points [points * d], Pa."""

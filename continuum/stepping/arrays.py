@@ -21,8 +21,7 @@ class StepFlags(NamedTuple):
     product : kind of the stiffness, `continuum.stepping.product`. law : None without joints.
     stressed : whether these carry anything at u = 0. damped : whether the rock has dashpots.
     relaxing : whether it has a quality factor. ledger : whether energies are recorded. sprung :
-    whether springs are in front of dashpots of sides. width : entries in a row of the jump
-    operator.
+    whether springs are in front of dashpots of sides.
     """
 
     dim: int
@@ -33,15 +32,15 @@ class StepFlags(NamedTuple):
     relaxing: bool
     ledger: bool
     sprung: bool = False
-    width: int = 0
 
 
 class Jumps(NamedTuple):
-    """The jump operator: column, int array, and value, float array [rows, width]; rows that have
-    fewer entries end with zeros."""
+    """The jump operator by pairs of nodes: first, uint32 array [points, 2], where the first freedom
+    of each is in vectors, the others `Product.stride` further on; frame, float array
+    [points, d, d]."""
 
-    column: np.ndarray
-    value: np.ndarray
+    first: np.ndarray
+    frame: np.ndarray
 
 
 class Quiet(NamedTuple):

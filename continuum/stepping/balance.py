@@ -71,7 +71,7 @@ class Balance:
         self.quiet = at_nodes(quiet.node, quiet.viscosity, n)
         self.springs = cache(quiet.springs) if quiet.springs else None
         self.ends, self.memory = quiet.freedom, cache(partial(memory_of, problem.mechanisms))
-        self.jumps = csr_matrix((0, n)) if body.joints is None else body.joints.matrix
+        self.jumps = csr_matrix((0, n)) if body.joints is None else body.joints.matrix(n)
         history = np.zeros((0, 0))
         if self.parts is not None:
             history = history_at_rest(self.points, self.parts, self.dim)

@@ -13,9 +13,11 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from jointwave.continuum.stepping.arrays import BOUNDARY, FRICTION, VISCOUS, WORK, StepFlags
 from jointwave.continuum.stepping.memory import relax, strain
-from jointwave.continuum.stepping.product import product_for
+from jointwave.continuum.stepping.product import product_for, stride_of
 from jointwave.continuum.stepping.tractions import tractions_for
 from jointwave.joints.formula import formula
 from jointwave.numerics.borrowed import borrowed
@@ -69,9 +71,8 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     """Return the kernel of steps of a body with these effects; absent ones are not compiled."""
     dim, law, damped, ledger = flags.dim, flags.law, flags.damped, flags.ledger
     relaxing = flags.relaxing
-    multiply, width = product_for(flags.product, dim), flags.width
-    sprung = flags.sprung
-    jointed = law is not None
+    multiply, stride = product_for(flags.product, dim), stride_of(flags.product)
+    sprung, jointed = flags.sprung, law is not None
     dashpots, rated = (False, False) if law is None else (law.dashpots, law.limited)
     viscous = damped or dashpots
     tractions: Any = None
@@ -81,18 +82,26 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     @formula
     def times(jumps, x, product):
         """Set the jumps of a vector."""
-        for i in range(product.size):
-            a = 0.0
-            for k in range(width):
-                a += jumps.value[i, k] * x[jumps.column[i, k]]
-            product[i] = a
+        for q in range(jumps.first.shape[0]):
+            i, j = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1])
+            for a in range(dim):
+                found = 0.0
+                for c in range(dim):
+                    o = np.uint64(c * stride)
+                    found += jumps.frame[q, a, c] * (x[j + o] - x[i + o])
+                product[dim * q + a] = found
 
     @formula
     def add_transposed(jumps, x, force):
         """Add forces that do as much work as x does with the jumps."""
-        for i in range(x.size):
-            for k in range(width):
-                force[jumps.column[i, k]] += jumps.value[i, k] * x[i]
+        for q in range(jumps.first.shape[0]):
+            i, j = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1])
+            for c in range(dim):
+                found, o = 0.0, np.uint64(c * stride)
+                for a in range(dim):
+                    found += jumps.frame[q, a, c] * x[dim * q + a]
+                force[i + o] -= found
+                force[j + o] += found
 
     @formula
     def relaxing_rock(c, s, w, sampled):

@@ -31,24 +31,13 @@ from jointwave.results.arrays import size_of
 BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
 
 
-def alike(matrix: csr_matrix, place: np.ndarray) -> Jumps:
-    """Return a jump operator as kernels take it: all rows with as many entries as the longest."""
-    count, rows = np.diff(matrix.indptr), matrix.shape[0]
-    row = np.repeat(np.arange(rows), count)
-    at = row, np.arange(matrix.nnz) - matrix.indptr[row]
-    column, value = np.zeros((2, rows, count.max(initial=0)))
-    column = column.astype(np.int64)
-    column[at], value[at] = place[matrix.indices], matrix.data
-    return Jumps(column, value)
-
-
 class Leapfrog:
     """Explicit steps of a problem.
 
     Attributes
     ----------
     state : `arrays.State`, in the places of `product`. samples : what is recorded. dt : s.
-    halo : freedoms of other processes, which follow in vectors.
+    halo : int array, places of the freedoms of other processes, which follow in vectors.
     """
 
     work_of_a_step = 1
@@ -57,11 +46,14 @@ class Leapfrog:
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body, parts = problem, dt, problem.body, problem.parts
         self.product, self._damping = products_for_steps(body)
-        self.halo = body.stiffness.shape[1] - body.stiffness.shape[0]
+        node, component = np.divmod(np.arange(np.diff(body.stiffness.shape)[0]), body.components)
+        tile, lane = np.divmod(node, self.product.stride)
+        self.halo = (tile * body.components + component) * self.product.stride + lane
+        self.halo += self.product.size
         self.samples = samples_for(problem.readings, samples, energy)
         self.constants = c = self._constants()
         many, springs, damped = c.memory.share.size, c.quiet.stiffness, body.damping is not None
-        jumps, width = c.jumps.column.shape
+        jumps = len(c.jumps.first) * body.components
         self.flags = StepFlags(
             dim=body.components,
             product=self.product.kind,
@@ -71,9 +63,8 @@ class Leapfrog:
             relaxing=many > 0,
             ledger=energy,
             sprung=len(springs) > 0,
-            width=width,
         )
-        n = self.product.size + self.halo
+        n = max(self.product.size, self.halo.max(initial=0) + 1)
         dashpots, limited = (parts.dashpots, parts.limited) if parts else (False, False)
         viscous, relaxing = n * (damped or dashpots), n * (many > 0)
         of_points = jumps, jumps * limited, jumps * dashpots, jumps, jumps * dashpots
@@ -167,9 +158,8 @@ class Leapfrog:
     def _constants(self) -> Constants:
         problem, place, dt = self.problem, self.product.place, self.dt
         body, held, forces = problem.body, problem.held, problem.forces
-        braked, nothing = 1 + problem.alpha * dt / 2, csr_matrix((0, body.mass.size))
+        braked = 1 + problem.alpha * dt / 2
         inverse = self._placed(dt / (body.mass * braked))
-        columns = np.append(place, self.product.size + np.arange(self.halo))
         return Constants(
             dt=dt,
             mass=self._placed(body.mass),
@@ -179,7 +169,7 @@ class Leapfrog:
             memory=memory_of(problem.mechanisms, dt),
             stiffness=self.product.table,
             damping=self._damping,
-            jumps=alike(body.joints.matrix if body.joints else nothing, columns),
+            jumps=self._jumps(),
             points=problem.points(),
             steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
             driven=np.zeros(0, np.int64) if forces is None else place[forces.freedom],
@@ -193,6 +183,13 @@ class Leapfrog:
         found = zeros(self.product.size)
         found[self.product.place] = values
         return found
+
+    def _jumps(self) -> Jumps:
+        joints, dim = self.problem.body.joints, self.problem.body.components
+        if joints is None:
+            return Jumps(np.zeros((0, 2), np.uint32), np.zeros((0, dim, dim)))
+        first = np.append(self.product.place, self.halo)[dim * joints.node]
+        return Jumps(first.astype(np.uint32), joints.frame)
 
     def _quiet(self, inverse: np.ndarray) -> Quiet:
         quiet, dim = self.problem.dashpots, self.problem.body.components

@@ -125,7 +125,8 @@ class Problem(NamedTuple):
         values = np.zeros((len(joints.weight), dim))
         for c, value in enumerate([normal, *(dim - 1) * [0.0 if shear is None else shear]]):
             values[:, c] = joints.weight * (value[joints.column] if np.ndim(value) else value)
-        return csr_matrix(joints.matrix.T @ diags(values.ravel()) @ joints.matrix)
+        jumps = joints.matrix(self.body.mass.size)
+        return csr_matrix(jumps.T @ diags(values.ravel()) @ jumps)
 
     @property
     def stiffness(self) -> csr_matrix:

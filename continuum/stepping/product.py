@@ -42,6 +42,16 @@ class Product(NamedTuple):
     place: np.ndarray
     size: int
 
+    @property
+    def stride(self) -> int:
+        """How far the freedoms of a node are apart in vectors."""
+        return stride_of(self.kind)
+
+
+def stride_of(kind: str) -> int:
+    """Return how far the freedoms of a node are apart in vectors of a kind of product."""
+    return LANES if kind == SHARED else 1
+
 
 def table_of(matrix: csr_matrix, dim: int) -> Table:
     """Return a matrix by rows of nodes."""

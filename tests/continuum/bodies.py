@@ -49,7 +49,8 @@ def springs(body: Body) -> csr_matrix:
     assert joints is not None
     k = [STIFFNESS[0], *[STIFFNESS[1]] * (body.components - 1)]
     weight = np.repeat(joints.weight, body.components) * np.tile(k, len(joints.weight))
-    return csr_matrix(joints.matrix.T @ diags(weight) @ joints.matrix)
+    jumps = joints.matrix(body.mass.size)
+    return csr_matrix(jumps.T @ diags(weight) @ jumps)
 
 
 def pushed(body: Body, stress: np.ndarray) -> np.ndarray:

@@ -92,7 +92,7 @@ def test_a_turned_excavation_is_the_same(rock_mass):
         )  # fmt: skip
         problem = plan_of(scene).problem
         u = at_rest(scene, problem)[1].u
-        jump = problem.readings.jump @ problem.body.joints.matrix @ u
+        jump = problem.readings.jump @ problem.body.joints.jumps(u).ravel()
         return jump, simulate(scene).traction.values[0, 0]
 
     slips = {"friction_angle": 21.0}

@@ -27,7 +27,7 @@ def first_break(scene, after):
     limit = problem.law.tensile_strength / problem.law.normal_stiffness
 
     def broken():
-        return np.flatnonzero(joints.matrix @ steps.last[0] > limit)
+        return np.flatnonzero(joints.jumps(steps.last[0]) > limit)
 
     steps.take(0, start, choice.time.steps)
     assert not broken().size
