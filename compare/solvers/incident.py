@@ -27,7 +27,7 @@ def incident(scene: Scene | RockMass) -> IncidentField | None:
 def side_warnings(scene: Scene | RockMass) -> list[str]:
     """Return the error of the quiet sides of a rock mass that its receivers feel in a line; none
     without."""
-    if not scene.in_plane or not scene.waves:
+    if not scene.waves:
         return []
     from jointwave.compare.exact.rock_mass.side_error import side_error
 

@@ -205,6 +205,31 @@ def test_what_the_field_leaves_out_is_said(joints, tables, words):
     assert words in line if words else line == ""
 
 
+def in_space(tables, east, kind):
+    """Return a scene of the plane as one in space, whose x is `east` there: unit vector (x, y)."""
+    (dip,), x = (one["dip"] for one in tables["joint_sets"]), np.array([*east, 0.0])
+    towards = {"dip_direction": float(np.degrees(np.arctan2(-x[0], -x[1])) % 360)}
+    motion = {"direction": [0.0, 0.0, 1.0]} | ({"polarisation": x.tolist()} if kind == "S" else {})
+    middle, joint = [4.0, 4.0, 8.0], tables["joint_sets"][0]
+    return tables | {
+        "domain": {"size": [8.0, 8.0, 16.0]},
+        "joint_sets": [joint | towards | {"dip": dip, "through": middle}],
+        "waves": [tables["waves"][0] | motion],
+        "boundaries": dict.fromkeys(("left", "right", "front", "back", *SIDES[2:]), "quiet"),
+        "record": {"points": [middle]},
+    }
+
+
+@pytest.mark.parametrize("kind", ["P", "S"])
+@pytest.mark.parametrize("east", [(1.0, 0.0), (0.6, -0.8)])
+def test_the_same_is_said_in_space(kind, east):
+    """The error is that of the section along the dip, whichever way the joint dips."""
+    tables = rock([SLIPS], kind)
+    found = side_error(jw.load(in_space(tables, east, kind)))
+    assert found.part == pytest.approx(side_error(jw.load(tables)).part, rel=1e-12)
+    assert "joint set 'joint' slips" in found.words and "[4, 4, 8]" in found.words
+
+
 def test_shipped_scenes_have_exact_sides_but_one():
     warned = {
         (path.stem, one.name)

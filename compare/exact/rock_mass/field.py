@@ -74,7 +74,7 @@ def field_of(scene: RockMass) -> IncidentField:
         return free_field(scene)
     if normal_incidence.applies(scene):
         return NormalField(scene)
-    planes = _planes_in_space(scene) if scene.in_space else planes_of(scene)
+    planes = planes_of(scene)
     waves = tuple(plane_wave(scene, one) for one in scene.waves)
     if planes.joint_sets or planes.regions:
         return StackField(stack_of(planes), waves)
@@ -114,12 +114,14 @@ def _planes_in_space(scene: RockMass) -> RockMass:
 
 def planes_of(scene: RockMass) -> RockMass:
     """Return a scene with those of its joints, boundaries of regions and free face alone that are a
-    stack of parallel planes: of joints that cross layers, or are not parallel, none, nor those that
-    periodic sides repeat; of a free face that is not parallel to layers none, else no joint that is
-    not parallel to it.
+    stack of parallel planes; raises SceneError where the waves between the others are not known."""
+    return _planes_in_space(scene) if scene.in_space else _planes_in_the_plane(scene)
 
-    Raises SceneError where the waves in its layers are not known.
-    """
+
+def _planes_in_the_plane(scene: RockMass) -> RockMass:
+    """The same in the plane: of joints that cross layers, or are not parallel, none, nor those that
+    periodic sides repeat; of a free face that is not parallel to layers none, else no joint that is
+    not parallel to it."""
     layers, sets = strata(scene.regions), _in_layers(scene)
     planes = scene.model_copy(update={"regions": layers, "joint_sets": []})
     if layers:

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.incident import PlaneWave, plane_wave
+from jointwave.cases.incident import PlaneWave, in_components, plane_wave
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import direction_of, rocks_of
+from jointwave.cases.partition.joints import attitude, rocks_of
 from jointwave.cases.partition.shape import Face, distance, shape_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.exact.plane.waves import face
+from jointwave.compare.exact.plane.waves import cosines, face
 from jointwave.compare.exact.rock_mass import normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
@@ -30,6 +30,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
     reflecting_side,
 )
 from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
+from jointwave.compare.exact.rock_mass.stack_waves import on_face
 
 LEAST = 0.01  # of the wave: less is not said
 SAMPLES = 2000  # times at which tractions are looked at, at most
@@ -49,7 +50,8 @@ class SideError(NamedTuple):
     @property
     def words(self) -> str:
         """The error in a line."""
-        near = [f"[{x:g}, {y:g}]" for places in self.near.values() for x, y in places]
+        places = [at for some in self.near.values() for at in some]
+        near = [f"[{', '.join(f'{x:g}' for x in at)}]" for at in places]
         more = [f"{len(near) - 3} more"] if len(near) > 3 else []
         nearer = f"; nearer: {', '.join([*near[:3], *more])}" if near else ""
         return (
@@ -161,11 +163,10 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     peak = max(float(np.abs(one.pulse.value(times)).max()) for one in waves)
     stress = _still(scene, places)[:, :, None] - field(places, times).stress
     for one in sets:
-        x, y = direction_of(one.dip)
-        moves = max(_moved(wave, np.array([x, y])) for wave in waves)
-        xx, yy, xy = np.moveaxis(stress, 1, 0)
-        pressed = xx * y * y - 2 * xy * x * y + yy * x * x
-        shear = np.abs((yy - xx) * x * y + xy * (x * x - y * y))
+        n = attitude(one, scene.domain.dimension)[0]
+        moves, traction = max(_moved(wave, n) for wave in waves), on_face(stress, n)
+        pressed = np.einsum("i,min->mn", n, traction)
+        shear = np.linalg.norm(traction - pressed[:, None] * n[:, None], axis=1)
         for excess, does in zip(_excess(one, pressed, shear), ("opens", "slips"), strict=True):
             yield (excess * moves / peak if peak else 0.0), f"joint set {one.name!r} {does}"
         if one.maximum_closure is not None and one.normal_stiffness:
@@ -174,13 +175,19 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
             yield part, f"joint set {one.name!r} stiffens"
 
 
-def _moved(wave: PlaneWave, along_joint: np.ndarray) -> float:
+def _moved(wave: PlaneWave, normal: np.ndarray) -> float:
     """Return the velocity that a traction on a joint gives the rock beside it at most, m/s/Pa: the
     largest singular value of V A^-1, V and A the velocities and tractions of unit P and SV waves
-    whose fronts follow a wave along the joint."""
-    w = face(wave.rock, abs(float(wave.direction @ along_joint)) / wave.speed)
+    whose fronts follow a wave along the joint; in space also of SH waves, 1 / (Z_s cos phi)."""
+    across = wave.direction - (wave.direction @ normal) * normal
+    slowness = float(np.linalg.norm(across)) / wave.speed
+    w = face(wave.rock, slowness)
     V, A = np.array([w.shear_velocity, w.normal_velocity]), np.array([w.shear, w.normal])
-    return float(np.linalg.norm(V @ np.linalg.inv(A), 2))
+    found = float(np.linalg.norm(V @ np.linalg.inv(A), 2))
+    if len(normal) == 3:
+        cosine = max(float(np.abs(cosines(wave.rock, slowness)[1])), ALONG)
+        found = max(found, 1 / (float(wave.rock.s_impedance) * cosine))
+    return found
 
 
 def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[float, float]:
@@ -207,7 +214,7 @@ def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[floa
 
 
 def _still(scene: RockMass, places: np.ndarray) -> np.ndarray:
-    """Return the initial stress (xx, yy, xy) at places [m, 2], Pa, compression positive [m, 3]: the
+    """Return the components of the initial stress at places [m, d], Pa, compression positive: the
     prestress and, at rest, the weight of the rock above, confined."""
     found = np.tile(prestress_of(scene), (len(places), 1))
     if scene.gravity is not None and scene.gravity.static:
@@ -215,7 +222,6 @@ def _still(scene: RockMass, places: np.ndarray) -> np.ndarray:
         depth = places @ g - (np.array(scene.domain.corners) @ g).min()
         weight = rock.density * scene.gravity.acceleration * depth
         side = rock.intact_poisson / (1 - rock.intact_poisson)
-        x, y = g
-        share = [side + (1 - side) * x * x, side + (1 - side) * y * y, (1 - side) * x * y]
-        found = found + weight[:, None] * np.array(share)
+        share = side * np.eye(len(g)) + (1 - side) * np.outer(g, g)
+        found = found + weight[:, None] * in_components(share)
     return found
