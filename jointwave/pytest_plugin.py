@@ -38,4 +38,5 @@ def _is_scene(path: Path) -> bool:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError):
         return False
-    return all(re.search(rf"^\s*\[?\s*({key})\b", text, re.MULTILINE) for key in KEYS)
+    begins = r"(^\s*\[?|[{,])\s*"
+    return all(re.search(rf"{begins}({key})\b", text, re.MULTILINE) for key in KEYS)

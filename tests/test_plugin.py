@@ -143,6 +143,12 @@ def solved(run, monkeypatch):
     return instead
 
 
+def test_bounds_of_inline_variants_are_held_too(run):
+    text = scene().split("[expect]")[0]
+    variants = 'variants = [\n{ name = "a", expect = { "dem ~ lattice" = 1e-9 } }]\n'
+    run(scene=variants + text).assert_outcomes(failed=1)
+
+
 def test_each_variant_is_held_to_the_pairs_that_apply_and_each_engine_runs_once(run, solved):
     names = solved({}, None)
     result = run("-v", scene=scene() + '"dem ~ no-tension-chain" = 1.0\n' + VARIANT)

@@ -10,9 +10,9 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.records import Column, read_columns
 from jointwave.cases.units import TIME, UNITS, split_unit
 from jointwave.compare.misfit.alignment import UNEVEN
-from jointwave.compare.misfit.external import selection
-from jointwave.compare.misfit.external_netcdf import is_netcdf
-from jointwave.compare.misfit.places import LABEL
+from jointwave.compare.misfit.external import Selection, selection
+from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
+from jointwave.compare.misfit.places import LABEL, Place
 from jointwave.results.labels import RECEIVERS
 from jointwave.results.netcdf import load_netcdf
 
@@ -67,21 +67,46 @@ def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
 
 def _of_file(text: str, quantity: str) -> xr.Dataset:
     choice = selection(text)
+    path, at = choice.path, choice.column if choice.is_time else "time"
     try:
-        if is_netcdf(choice.path):
-            return load_netcdf(choice.path)
-        table = read_columns(choice.path, gaps=False)
-        columns = [one for one in table.rest if choice.fits(one)]
-        if choice.label and len(columns) == 1:
-            name, unit = split_unit(choice.label)
-            columns = [columns[0]._replace(name=name, unit=unit or columns[0].unit)]
-        if not columns:
-            raise ValueError(f"has no column {choice.column!r}")
-        return dataset_of(table.time.si(TIME), columns, quantity)
+        if is_netcdf(path) and not (choice.column or choice.label):
+            return load_netcdf(path)
+        table = read_netcdf(path, 2) if is_netcdf(path) else read_columns(path, at, gaps=False)
+        time, columns = table
+        if choice.is_time:
+            time = time._replace(unit=split_unit(choice.label)[1] or time.unit)
+        else:
+            columns = _selected(columns, choice)
+        return dataset_of(time.si(TIME), columns, quantity)
     except (OSError, ValueError, MemoryError) as error:
         if isinstance(error, SceneError):
             raise
         raise SceneError(str(choice.path), "", None, str(error)) from None
+
+
+def _selected(every: list[Column], choice: Selection) -> list[Column]:
+    """Return the columns that a selection names, with its label, sign and unit; raises
+    ValueError."""
+    columns, (label, unit) = [one for one in every if choice.fits(one)], split_unit(choice.label)
+    wanted, found = _place(label), []
+    for one in columns:
+        place = _place(one.name)
+        if wanted is None or (wanted.is_at(place) if place else len(columns) == 1):
+            name = one.name if place or not label else label
+            sign = "-" * ("-" in (one.name[:1], label[:1]))
+            found.append(Column(sign + name.removeprefix("-"), unit or one.unit, one.values))
+    if not found:
+        raise ValueError(f"has no column {choice.column or choice.label!r}")
+    return found
+
+
+def _place(name: str) -> Place | None:
+    """Return quantity, component and receiver of a column's name or a label."""
+    match = LABEL.fullmatch(name.removeprefix("-"))
+    if match is None or match[1].lower() not in UNITS:
+        return None
+    at = tuple(float(one) for one in match.groups()[2:] if one is not None)
+    return Place(match[1].lower(), match[2] or "", at)
 
 
 def dataset_of(time: np.ndarray, columns: list[Column], quantity: str) -> xr.Dataset:
@@ -94,9 +119,8 @@ def dataset_of(time: np.ndarray, columns: list[Column], quantity: str) -> xr.Dat
         sign, name = (-1.0 if column.name.startswith("-") else 1.0), column.name.removeprefix("-")
         at: Where = name
         measured, component = quantity, ""
-        if (match := LABEL.fullmatch(name)) and match[1].lower() in UNITS:
-            measured, component = match[1].lower(), match[2] or ""
-            at = tuple(float(one) for one in match.groups()[2:] if one is not None)
+        if place := _place(name):
+            measured, component, at = place
         elif column.unit and column.unit not in UNITS[quantity]:
             measured = next((one for one in MEASURED if column.unit in UNITS[one]), quantity)
         waves[measured, at, component] = sign * column.si(UNITS[measured])

@@ -122,6 +122,33 @@ def row(tmp_path):
     return path, result, (time, [pulse[0], 0.9 * pulse[1]])
 
 
+def test_a_recording_is_what_a_label_selects_with_its_sign_and_times(row, tmp_path):
+    """In a table and in a result; a minus of either turns the sign, as with `compare --with`."""
+    path, result, (time, (first, last)) = row
+    rows = path.read_text().split("\n", 1)[1]
+    (tmp_path / "other.csv").write_text(f"t0,-CH 1,CH 2\n{rows}")
+    result.assign_coords(axis=["y"]).to_netcdf(tmp_path / "run.nc")
+    other = f"{tmp_path / 'other.csv'}:"
+    for source, expected in (
+        (f"{path}:velocity@15", last),
+        (f"{path}:-velocity@15 [mm/s]", -1e-3 * last),
+        (f"{tmp_path / 'run.nc'}:velocity@15", last),
+        (f"{tmp_path / 'run.nc'}:-velocity_y@5", -first),
+        (f"{path}:velocity@5=velocity@5 [mm/s]", 1e-3 * first),
+    ):
+        (found,) = jw.recording(source).velocity
+        np.testing.assert_allclose(found.values[:, 0], expected, rtol=1e-12)
+    found = jw.recording(f"{other}t0=time [ms]")
+    np.testing.assert_allclose(found.time, 1e-3 * time, rtol=1e-12)
+    np.testing.assert_allclose(found.velocity[0, :, 0], -first, rtol=1e-12)
+    (tmp_path / "other.csv").write_text(f"time,-CH 1,CH 2\n{rows}")
+    found = jw.recording(f"{other}-CH 1=velocity@5").velocity[0, :, 0]
+    np.testing.assert_allclose(found, -first, rtol=1e-12)
+    for source in (f"{path}:velocity@9", f"{tmp_path / 'run.nc'}:velocity@9", f"{other}CH 3"):
+        with pytest.raises(SceneError, match=r"has no column '(velocity@9|CH 3)'"):
+            jw.recording(source)
+
+
 def test_waves_between_recorders(row):
     """Speed, attenuation and phase speed, from a file, arrays with places and one array of xarray;
     where the places are not known, one line says so."""
