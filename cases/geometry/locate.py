@@ -53,11 +53,12 @@ def rock_neighbours(blocks: Blocks, sets: int) -> dict[int, list[int]]:
 
 def contact_at(blocks: Blocks, points: np.ndarray, sets: int) -> np.ndarray:
     """Return the contact of the first joint sets that is nearest to each point (float array [m, d],
-    m); of those as near, the first.
+    m); of those as near, the first of the first set.
 
     Raises ValueError where there is no such contact.
     """
     chosen = np.flatnonzero(blocks.contacts.of_joints(sets))
+    chosen = chosen[np.argsort(blocks.contacts.joint_set[chosen], kind="stable")]
     if not len(chosen):
         raise ValueError("there is no contact")
     outlines, centres = blocks.contacts.outlines, blocks.contacts.centroid[chosen]

@@ -7,6 +7,7 @@ the place on them that is nearest to the receiver, between their points there.
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, kron
 
+from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.geometry.measure import upwards
 from jointwave.cases.geometry.relations import joined
 from jointwave.cases.schema.rock_mass import RockMass
@@ -46,7 +47,7 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
     if body.joints is not None and len(body.joints.weight):
         area, each = np.repeat(body.joints.weight, dim), np.arange(len(body.joints.weight) + 1)
         turned = bsr_matrix((upwards(body.joints.frame).swapaxes(1, 2), each[:-1], each))
-        read = kron(nearest_points(body, body.joints, joints), np.eye(dim)) @ turned
+        read = kron(nearest_points(found, body.joints, joints), np.eye(dim)) @ turned
         read = csr_matrix(read).sorted_indices()
         read.eliminate_zeros()
     if stress is not None:
@@ -146,12 +147,15 @@ def _patch(
     return cells, at, np.linalg.pinv(terms)[0] * weight
 
 
-def nearest_points(body: Body, joints: JumpOperator, places: np.ndarray) -> np.ndarray:
+def nearest_points(found: SceneBody, joints: JumpOperator, places: np.ndarray) -> np.ndarray:
     """Return the shares of joints' points at the places on joints nearest to these [r, points]."""
-    shares: list[np.ndarray] = []
+    body, shares = found.body, list[np.ndarray]()
     nodes, before = nodes_of_cells(body), joints.node[:, 0]  # that normals point away from
-    for place in places:
-        nearest = int(np.linalg.norm(joints.place - place, axis=1).argmin())
+    contacts = contact_at(found.blocks, places, len(found.scene.joint_sets))
+    for place, contact in zip(places, contacts, strict=True):
+        away = np.linalg.norm(joints.place - place, axis=1)
+        away[joints.column != contact] += found.scene.reach  # tips alone have no points
+        nearest = int(away.argmin())
         normal, share = joints.frame[nearest, 0], np.zeros(len(joints.weight))
         off = (joints.place - joints.place[nearest]) @ normal
         level = (np.abs(joints.frame[:, 0] @ normal) > 1 - LEVEL) & (

@@ -11,7 +11,7 @@ from jointwave.cases.read import load_tables
 from jointwave.cases.warnings import warnings
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.metrics import relative_l2
-from tests.field_cases.scenes import JOINT, mass, wave
+from tests.field_cases.scenes import ENGINES, JOINT, mass, wave
 
 DIP = 30.0
 NORMAL = np.array([-np.sin(np.radians(DIP)), np.cos(np.radians(DIP))])
@@ -106,6 +106,25 @@ def test_a_pillar_reads_the_mean_of_both_sides_of_a_soft_layer():
     assert [line.split(" m ")[0] for line in near if "half a block" in line] == [
         "record.velocity = 25.1"
     ]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_nearest_joint_is_read_though_nodes_of_another_are_nearer(engine):
+    """Beds 0.45 m below, with nodes at x = 4 and 6 m, and a joint 0.8 m to the left, with one at
+    y = 4.5 m; at the crossing it is the first set."""
+    tables = mass(
+        *(8.0, 8.0),
+        joint_sets=[
+            JOINT | {"name": "bed", "dip": 0.0, "spacing": 1.0},
+            JOINT | {"name": "cross", "dip": 90.0, "through": [4.0, 4.0]},
+        ],
+        prestress={"xx": 4e6, "yy": 6e6, "xy": 7e5},
+        time={"duration": 1e-4},
+        numerics={"continuum": {"size": 4.0}},
+        record={"joints": [[4.8, 4.45], [4.0, 4.0]]},
+    )
+    found = solve(engine, load_tables(tables)).traction[:, 0]
+    assert found.values == pytest.approx(np.array([[6e6, -7e5]] * 2), rel=1e-7)
 
 
 def _at(scene, places):
