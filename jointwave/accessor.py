@@ -4,6 +4,7 @@ it along; a script that reads results from files imports this module."""
 from __future__ import annotations
 
 import json
+from itertools import count
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -33,17 +34,14 @@ class ResultFigures:
 
         found: dict[tuple[str, str, int], Comparison] = {}
         for number, one in enumerate((self.result, *others), start=1):
-            tables, variant, again = json.loads(one.attrs["scene"]), one.attrs["variant"], 0
+            variant, solver = one.attrs["variant"], one.attrs["engine"]
+            tables = json.loads(one.attrs["scene"])
             physics = json.dumps({key: x for key, x in tables.items() if key not in ASIDE})
             scene = scene_of(one)
             if variant in [known for known, *_ in found]:
                 scene = scene.model_copy(update={"name": f"result {number}"})
-            while (
-                one.attrs["engine"]
-                in (row := found.setdefault((variant, physics, again), Comparison(scene))).results
-            ):
-                again += 1
-            row.results[one.attrs["engine"]] = one
+            rows = (found.setdefault((variant, physics, k), Comparison(scene)) for k in count())
+            next(row for row in rows if solver not in row.results).results[solver] = one
         return draw_solutions(list(found.values()), False, printed(width, font_size))
 
     def plot_map(

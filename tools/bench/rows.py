@@ -12,7 +12,9 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.cases.validate import validated
 from jointwave.compare.engines import solver
 from jointwave.compare.scenes import find
-from jointwave.dem import simulate
+from jointwave.dem.kernel.model import samples_for, state_at_rest
+from jointwave.dem.prepare import prepared
+from jointwave.dem.run import stepper
 
 BLOCK_STEPS = 20_000_000  # of one run
 LEAST = 64  # steps of one run
@@ -44,8 +46,8 @@ def lattice(blocks: int, law: dict, tables: dict[str, Any], dim: int = 2) -> Roc
 
 
 def stretch(scene: Scene, threads: int = 1) -> Timed:
-    """Return a function that runs a pillar for some steps and returns the seconds that these took,
-    and its number of block-steps."""
+    """Return a function that takes steps of a pillar under its load, and its number of
+    block-steps."""
     dt = solver("dem").prepare(scene).dt
     samples = max(LEAST, BLOCK_STEPS // scene.block_count) * dt // scene.interval + 1
     tables = {
@@ -55,5 +57,7 @@ def stretch(scene: Scene, threads: int = 1) -> Timed:
     brief = scene.model_copy(
         update={key: getattr(scene, key).model_copy(update=one) for key, one in tables.items()}
     )
-    steps = solver("dem").prepare(brief).steps
-    return lambda: simulate(brief).attrs["seconds_stepping"], steps * scene.block_count
+    system = prepared(brief)
+    state, steps = state_at_rest(system.model), system.time.stride * system.time.samples
+    step = stepper(system, state, samples_for(system.model, system.time.samples))
+    return lambda: step(0, steps), steps * scene.block_count
