@@ -22,6 +22,9 @@ from jointwave.continuum.space.rock import Material
 DIGITS = 9  # to which moduli of cells of one rock agree
 ZERO = 1e-9  # of the largest entry: what must be zero
 
+#: A displacement linear in place: its translation [components] and gradient [components, d].
+Motion = tuple[np.ndarray | float, np.ndarray | float]
+
 
 class CellMeans:
     """The means of a bilinear form's integrand over the cells of a mesh, for displacements that are
@@ -38,15 +41,14 @@ class CellMeans:
         self.sums = compat.cell_sums(domain, ufl.replace(cells, {u: moved[0], v: moved[1]}))
         self.volume = compat.cell_sums(domain, compat.constant(domain, (), 1.0) * ufl.dx(domain))()
 
-    def of(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Return the means [cells] for two displacements, each a translation [components] or a
-        gradient [components, d]."""
+    def of(self, u: Motion, v: Motion) -> np.ndarray:
+        """Return the means for two displacements [cells]."""
         for parts, given in zip(self.parts, (u, v), strict=True):
-            for k, part in enumerate(parts):
-                part.value[...] = given if given.ndim == k + 1 else 0.0
+            for part, values in zip(parts, given, strict=True):
+                part.value[...] = values
         return self.sums() / self.volume
 
-    def table(self, motions: list[np.ndarray]) -> np.ndarray:
+    def table(self, motions: list[Motion]) -> np.ndarray:
         """Return the means for each displacement v with each u [cells, n, n]."""
         return np.moveaxis(np.array([[self.of(u, v) for u in motions] for v in motions]), 2, 0)
 
@@ -77,21 +79,16 @@ def materials_of(
             _refuse(scene, f"{name} must be a form of a trial and a test function")
     _refuse_own_rock(scene, forms, own)
     density = _density(scene, forms.mass, space)
-    means, far = (
-        CellMeans(space, forms.stiffness),
-        float(np.ptp(space.mesh.geometry.x, axis=0).max()),
-    )
-    strains, rigid = strains_of(means.dim, means.size), [*far * np.eye(means.size)]
-    if means.dim > 1:
-        rigid += [np.triu(one, 1) - np.tril(one, -1) for one in strains[means.dim :]]
-    motions, n = [*rigid, *strains], len(rigid)
-    table, bent = means.table(motions), strains.sum(axis=0)
-    stiffness, most = table[:, n:, n:].copy(), np.abs(table).max()
-    table[:, n:, n:] = 0.0
+    means = CellMeans(space, forms.stiffness)
+    strains = strains_of(means.dim, means.size)
+    motions = [_rigid(space, strains), *((0.0, one) for one in strains)]
+    table, (once, twice) = means.table(motions), ((0.0, k * strains.sum(axis=0)) for k in (1, 2))
+    stiffness, most = table[:, 1:, 1:].copy(), np.abs(table).max()
+    table[:, 1:, 1:] = 0.0
     least = np.linalg.eigvalsh(stiffness).min() if np.isfinite(most) else np.nan
     for wrong, why in (
         (min(least, 0.0), f"must not be negative: it has a modulus of {least:.3g} Pa"),
-        (means.of(2 * bent, bent) - 2 * means.of(bent, bent), "must be linear in the displacement"),
+        (means.of(twice, once) - 2 * means.of(once, once), "must be linear in the displacement"),
         (table, "in the rock must be of strains, not of displacements or rotations"),
         (stiffness - stiffness.swapaxes(1, 2), "must be symmetric in trial and test function"),
     ):
@@ -99,10 +96,10 @@ def materials_of(
             _refuse(scene, f"stiffness {why}")
     eta = np.zeros(len(density))
     if forms.damping is not None:
-        damping = CellMeans(space, forms.damping).table(motions)
-        table[:, n:, n:] = stiffness
-        eta = np.trace(damping[:, n:, n:], axis1=1, axis2=2) / np.trace(stiffness, axis1=1, axis2=2)
-        off = np.abs(damping - eta[:, None, None] * table).max()
+        damping, whole = CellMeans(space, forms.damping).table(motions), np.zeros_like(table)
+        whole[:, 1:, 1:] = stiffness
+        eta = np.trace(damping, axis1=1, axis2=2) / np.trace(stiffness, axis1=1, axis2=2)
+        off = np.abs(damping - eta[:, None, None] * whole).max()
         if not off <= ZERO * np.abs(damping).max() or (eta < 0).any():
             _refuse(scene, "damping must be a time constant, not below 0, times the stiffness")
     rows = np.column_stack([density, eta, stiffness.reshape(len(density), -1)])
@@ -113,10 +110,19 @@ def materials_of(
     return each, which.reshape(-1)
 
 
+def _rigid(space: Any, strains: np.ndarray) -> Motion:
+    """Return a rigid motion that has something of every one: forms that resist any resist it."""
+    size, dim = strains.shape[1:]
+    share = np.sqrt([2.0, 3.0, 5.0])
+    turns = [np.triu(one, 1) - np.tril(one, -1) for one in strains[dim:]] if dim > 1 else []
+    turned = sum((k * one for k, one in zip(share, turns, strict=False)), np.zeros((size, dim)))
+    return share[:size] * np.ptp(space.mesh.geometry.x, axis=0).max(), turned
+
+
 def _density(scene: AnyScene, mass: ufl.Form, space: Any) -> np.ndarray:
     """Return the density of each cell, kg/m3 [cells]; raises SceneError where a mass has none."""
     means = CellMeans(space, mass)
-    table = means.table([*np.eye(means.size)])
+    table = means.table([(one, 0.0) for one in np.eye(means.size)])
     found = table[:, 0, 0]
     off = np.abs(table - found[:, None, None] * np.eye(means.size)).max()
     if not found.min() > 0 or off > ZERO * found.max() or has_type(mass, ufl.classes.Derivative):

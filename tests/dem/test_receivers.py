@@ -14,7 +14,6 @@ from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.geometry.measure import frames_of
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
-from jointwave.cases.read import load_tables
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.blocks.rock_mass import blocks_of as rigid_blocks
 from jointwave.dem.contacts.faces import Contacts
@@ -26,7 +25,6 @@ from jointwave.dem.readings.receivers import (
 )
 from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, triangles
 from jointwave.dem.readings.waveforms import at_points, mean_stress, quantities
-from jointwave.dem.run import simulate
 from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
@@ -34,8 +32,6 @@ from jointwave.results.stress import stress_components
 
 WALL = Path(__file__).parents[2] / "cases/rock-mass/masonry-wall.toml"
 SIZE, TOLERANCE = np.array([6.0, 5.0, 4.0]), 1e-9
-STIFFNESS = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
-PUSH = {"kind": "pressure", "side": "top", "shape": "ricker", "period": 2e-3, "amplitude": 1e6}
 DIMENSIONS = pytest.mark.parametrize("dim", (1, 2, 3))
 ROTATIONS = {1: 0, 2: 1, 3: 3}
 
@@ -255,26 +251,6 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
         if dim > 1:
             slip = got["slip"][~last, 1].reshape(-1, dim - 1)
             np.testing.assert_allclose(slip, (7 + 3e-10) * expected[~last, 1:], rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("dim", [2, 3])
-def test_joints_are_read_where_no_points_are(dim):
-    """As beside receivers at points."""
-    middle = [[0.5, 0.5, 0.5][:dim]]
-    results = [
-        simulate(load_tables(one))
-        for points in ([], middle)
-        for one in [{
-            "title": "joints", "domain": {"size": [1.0] * dim}, "time": {"duration": 1e-2},
-            "rock": {"density": 2600.0, "intact_modulus": 5e10},
-            "joint_sets": [{"name": "bed", "dip": 0.0, "spacing": 0.25} | STIFFNESS],
-            "loads": [PUSH], "boundaries": {"bottom": "fixed"},
-            "record": {"joints": middle, "points": points},
-        }]
-    ]  # fmt: skip
-    for name in ("traction", "gap", "slip"):
-        np.testing.assert_array_equal(results[0][name], results[1][name])
-    assert results[0].traction.any() and "velocity" not in results[0]
 
 
 def test_snapshots_show_whole_blocks():
