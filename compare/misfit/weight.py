@@ -18,6 +18,9 @@ from jointwave.results.labels import UNITS
 CARRIES = 0.05  #: part of the motion from which a component decides a misfit
 FAINT = 0.01  #: part of the largest motion of a unit from which a receiver decides one
 EXCITED = 1e-6  #: part of the largest motion of a unit below which a scene does not excite anything
+#: Pa s/m: stress below this times the velocity, 1e-8 of what waves in soft soil have, is round-off
+#: of rock that moves as a whole.
+RIGID = 1e-3
 ROUND_OFF = 1e-9  # of the largest displacement (m): rotations (rad) below count as zero
 _ONE_VECTOR = {"shear": "stress", "slip": "gap"}
 
@@ -49,6 +52,7 @@ def weigh(places: Sequence[Place], moved: np.ndarray) -> Weight:
     units = np.array([unit_of[p.quantity] for p in places], dtype=int)
     loudest = np.zeros(len(UNITS))
     np.maximum.at(loudest, units, motion)
+    loudest[0] *= loudest[0] >= RIGID * loudest[1]
     at_rest = ((loudest == 0) & loudest.any())[units]
     loudest[3] = max(loudest[3], ROUND_OFF / FAINT * loudest[2])
     largest = loudest[units]
