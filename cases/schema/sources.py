@@ -90,7 +90,7 @@ class PlaneLoad(Pulse):
     #: m, in the plane two points of the boundary: the pressure acts only between them; around an
     #: opening counter-clockwise from the first to the second, unless both are on one face
     between: Annotated[list[Point], Two] | None = None
-    at: Point | None = None  #: m, where a force acts
+    at: Point | None = None  #: m, where a force acts; on a joint on its sides alike
     #: x, y, in space x, y, z: of a force or of the motion of a base
     direction: UnitVector | None = None
 

@@ -240,8 +240,13 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
-    """Warn of points on joints, across which velocity and the stress along them jump."""
-    corners, points = np.array(scene.domain.corners), np.array(scene.record.points)
+    """Warn of points on joints, across which velocity and the stress along them jump, and of forces
+    there."""
+    read = "where velocity, displacement and the stress along it are the mean of both sides"
+    named = [(f"record.points[{i}]", x, read) for i, x in enumerate(scene.record.points)]
+    forces = [(f"{key}.at", one.at) for key, one in scene.entries("loads") if one.at]
+    named += [(*one, "whose sides bear equal parts of the force") for one in forces]
+    corners, points = np.array(scene.domain.corners), np.array([at for _, at, _ in named])
     for k, one in enumerate(scene.joint_sets):
         if one.scatter or scene.domain.file_key or not len(points):
             continue
@@ -250,11 +255,8 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
         if len(on) and (one.ends_at or one.regions):
             sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))
             on = on[[len(blocks) > 1 for blocks in sides]]
-        for i in on.tolist():
-            yield (
-                f"record.points[{i}] = {_at(points[i])} lies on a joint of joint_sets[{k}], where "
-                "velocity, displacement and the stress along it are the mean of both sides"
-            )
+        for key, at, what in (named[i] for i in on):
+            yield f"{key} = {_at(at)} lies on a joint of joint_sets[{k}], {what}"
 
 
 RULES = (

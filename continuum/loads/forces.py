@@ -17,6 +17,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.continuum.loads.ends import end_force
 from jointwave.continuum.loads.sides import facets_on, impedances_of, inside
+from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
 from jointwave.continuum.space.evaluation import matrix_of, places_in
 from jointwave.continuum.space.model import Body, Facets, directions, forces_on
 
@@ -79,11 +80,11 @@ def _base(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
 
 
 def _force(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
-    """Return a force of 1 N at a point."""
+    """Return a force of 1 N at a point, on the sides of a joint there alike."""
     assert load.at is not None and load.direction is not None
     here = places_in(body, np.array([load.at]))
-    weights = here.basis[:, None, :, None] * np.array(load.direction) / len(here.cell)
-    return matrix_of(body, here.point, here.cell, weights, 1).toarray()[0]
+    share = shares_of_pieces(here.point, pieces_of(body)[here.cell])
+    return motion_at(body, here, share, 1).T @ np.array(load.direction)
 
 
 def _pressure(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:

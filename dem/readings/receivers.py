@@ -2,8 +2,9 @@
 
 The motion of a block is that of the rock in its middle. Between blocks that a cut through intact
 rock parts, motion and stress at a point are interpolated: those of the point's block, and their
-gradient by least squares over its neighbours, which is exact to second order. Where all neighbours
-are beyond joints, the block moves as it is: u + phi x r, with its mean stress.
+gradient by least squares over its neighbours, which is exact to second order. A triangle at a face
+or a joint has too few of these: the next ones, which point as it does, count too. Where all
+neighbours are beyond joints, the block moves as it is: u + phi x r, with its mean stress.
 """
 
 from __future__ import annotations
@@ -68,30 +69,40 @@ def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndar
         np.array(places, dtype=float).reshape(-1, dim)
         for places in (scene.record.points, scene.record.joints)
     )
-    sides = sides_at(blocks, points, sets)
-    if [] in sides:
-        k = sides.index([])
-        raise SceneError(scene.where, f"record.points[{k}]", points[k].tolist(), "must lie in rock")
-    shared = 0.0 if squared(scene) else SHARED
-    at_points = stencils_in_rock(blocks, points, sides, sets, shared)
+    at_points = stencils_at(scene, blocks, points)
+    read = {one.receiver for one in at_points}
+    if lost := [k for k in range(len(points)) if k not in read]:
+        place = points[lost[0]].tolist()
+        raise SceneError(scene.where, f"record.points[{lost[0]}]", place, "must lie in rock")
     along = scene.numerics.dem.block is not None
     at_joints = stencils_on_joints(blocks, joints, sets, along) if len(joints) else []
     return read_by(blocks.volume, faces, onto, at_points, at_joints)
 
 
+def stencils_at(scene: RockMass, blocks: Blocks, points: np.ndarray) -> list[Stencil]:
+    """Return how points [m, d] are read in the blocks of a scene; not at all outside the rock."""
+    sets = len(scene.joint_sets)
+    sides = sides_at(blocks, points, sets)
+    return stencils_in_rock(blocks, points, sides, sets, not squared(scene))
+
+
 def stencils_in_rock(
-    blocks: Blocks, points: np.ndarray, sides: list[list[int]], sets: int, shared: float = 0.0
+    blocks: Blocks, points: np.ndarray, sides: list[list[int]], sets: int, shared: bool = False
 ) -> list[Stencil]:
     """Return how points [m, d] are read in the blocks on their sides, by `sides_at`: as a mean.
 
-    sets : number of joint sets. shared : how much of the value itself is the neighbours'.
+    sets : number of joint sets. shared : whether SHARED of the value itself is the neighbours'.
     """
-    near = rock_neighbours(blocks, sets)
-    return [
-        _stencil(k, [block, *near.get(block, [])], blocks.centroid, at, shared, 1 / len(own))
-        for k, (at, own) in enumerate(zip(points, sides, strict=True))
-        for block in own
-    ]
+    near, full = rock_neighbours(blocks, sets), blocks.body.dim + 1
+    found = []
+    for k, (at, own) in enumerate(zip(points, sides, strict=True)):
+        for block in own:
+            beside = near.get(block, [])
+            like = {j for i in beside for j in near[i]} if shared and len(beside) < full else set()
+            others = [*beside, *sorted(like - {block, *beside})]
+            part = np.isin(others, beside) if shared else None
+            found.append(_stencil(k, [block, *others], blocks.centroid, at, part, 1 / len(own)))
+    return found
 
 
 def stencils_on_joints(blocks: Blocks, points: np.ndarray, sets: int, along: bool) -> list[Stencil]:
@@ -126,15 +137,22 @@ def _stencil(
     own: list[int],
     centres: np.ndarray,
     at: np.ndarray,
-    shared: float = 0.0,
+    beside: np.ndarray | None = None,
     share: float = 1.0,
 ) -> Stencil:
-    """Return how a share of a receiver at a place [d] is read from things with these centres."""
+    """Return how a share of a receiver at a place [d] is read from things with these centres.
+
+    beside : which of all but the first lie beside it and have SHARED of the value, bool array.
+    """
     off, apart = at - centres[own[0]], centres[own[1:]] - centres[own[0]]
     if not len(apart):
         return Stencil(receiver, own, np.array([share]), share * off)
-    mean = np.full(len(apart), shared / len(apart))
-    weight = np.linalg.pinv(apart.T, rcond=FLAT) @ (off - mean @ apart) + mean
+    mean, terms, aim = np.zeros(len(apart)), apart, off
+    if beside is not None:
+        mean = SHARED * beside / beside.sum()
+        length = np.linalg.norm(apart, axis=1).mean()
+        terms, aim = np.column_stack([apart, length * beside]), np.append(off, length * SHARED)
+    weight = np.linalg.pinv(terms.T, rcond=FLAT) @ (aim - mean @ terms) + mean
     rest = off - weight @ apart
     return Stencil(receiver, own, share * np.append(1 - weight.sum(), weight), share * rest)
 

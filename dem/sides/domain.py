@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
-from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.geometry.measure import Outlines
+from jointwave.cases.histories import LoadHistory
 from jointwave.cases.incident import IncidentField, free_field
 from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.quiet_sides import base_traction, borne, impedances
@@ -16,6 +16,7 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.dem.readings.receivers import stencils_at
 from jointwave.dem.sides.boundaries import facets_on, points_on
 from jointwave.dem.sides.loads import Pattern, Source, reactions
 from jointwave.dem.sides.shaking import Base
@@ -72,9 +73,7 @@ def load_pattern(
     sides, in order."""
     history = velocity_of(load, load.amplitude)
     if load.kind == "force":
-        at = np.array(load.at)
-        block = blocks_at(blocks, at[None])[0][:1]
-        return Pattern(block, at - blocks.centroid[block], np.array([load.direction]), history)
+        return _force(scene, blocks, load, history)
     facets, parts = facets_on(blocks, sides, [load.side or f"opening {load.opening}"]), None
     if load.between is not None:
         facets, parts = _covered(scene, blocks, load, facets)
@@ -86,6 +85,17 @@ def load_pattern(
     else:
         traction = -points.normal
     return Pattern(points.block, points.arm, points.area[:, None] * traction, history)
+
+
+def _force(scene: RockMass, blocks: Blocks, load: PlaneLoad, history: LoadHistory) -> Pattern:
+    """Return a force at a point on the blocks that a receiver there reads, as it reads them: what
+    one force does where another acts, that one does here."""
+    direction, rows = np.array(load.direction), list[tuple[int, np.ndarray, float]]()
+    for one in stencils_at(scene, blocks, np.array([load.at])):
+        rows += [(k, 0 * one.arm, weight) for k, weight in zip(one.at, one.weight, strict=True)]
+        rows += [(one.at[0], one.arm, 1.0), (one.at[0], 0 * one.arm, -1.0)]  # its moment
+    block, arm, share = map(np.array, zip(*sorted(rows, key=lambda row: row[0]), strict=True))
+    return Pattern(block, arm, share[:, None] * direction, history)
 
 
 def _covered(

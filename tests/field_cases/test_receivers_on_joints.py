@@ -1,7 +1,8 @@
-"""Receivers exactly on a joint (exact solutions were 73 % from the continuum there).
+"""Receivers exactly on a joint (exact solutions were 73 % from the continuum there), and forces.
 
 Velocity, displacement and the stress along a joint jump across it: every solver reads the mean of
-both sides, within 1e-9 of the rock's size, and a warning says so. Traction does not jump.
+both sides, within 1e-9 of the rock's size, and a warning says so. Traction does not jump. A force
+acts as a receiver at its place reads.
 """
 
 import numpy as np
@@ -87,6 +88,49 @@ def test_a_point_on_a_joint_is_warned_of(tilted):
     said = [line for line in warnings(tilted) if "lies on a joint" in line]
     assert [line.split()[0] for line in said] == [f"record.points[{k}]" for k in range(3)]
     assert "joint_sets[0]" in said[0] and "mean of both sides" in said[0]
+
+
+def forced(at, direction, point, **tables):
+    """Return rock under a force, with all that reflects waves, as far as tables leave it."""
+    joints = [{"dip": 33.0, "spacing": 5.0, "through": [1.0, 1.0]}, {"name": "other", "dip": -57.0}]
+    load = wave("force", direction, quantity="force") | {"at": at}
+    own = {
+        "joint_sets": [JOINT | {"through": [17.0, 9.0]} | one for one in joints],
+        "regions": [{"name": "top", "dip": -12.0, "through": [12.0, 15.0], "intact_modulus": 2e10}],
+        "boundaries": {"left": "quiet", "right": "fixed", "bottom": "roller"},
+        "loads": [load],
+        "time": {"duration": 0.02},
+        "record": {"points": [point]},
+        "numerics": {"dem": {"block": 1.5}, "continuum": {"size": 2.0}},
+    }
+    return load_tables(mass(24.0, 20.0, **own | tables))
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_a_force_does_elsewhere_a_force_there_does_here(engine):
+    """Betti and Rayleigh's reciprocity, to round-off."""
+    one, other = ([5.3, 4.1], [0.6, 0.8]), ([18.7, 13.3], [0.28, -0.96])
+    there, here = (
+        solve(engine, forced(*a, b[0])).velocity.values[0] @ b[1]
+        for a, b in ((one, other), (other, one))
+    )
+    np.testing.assert_allclose(there, here, atol=1e-11 * np.abs(here).max())
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_force_on_a_joint_acts_on_both_sides_alike(engine):
+    """Hardly off the joint it acts on one side, and does up to 0.6 of the peak there more."""
+
+    def scene(away):
+        at, joint = [11.7, 12.0 + away], JOINT | {"dip": 0.0, "through": [12.0, 12.0]}
+        return forced(at, [0.6, 0.8], [12.0, 17.0], joint_sets=[joint], regions=[])
+
+    on, above, below = (solve(engine, scene(x)).velocity.values for x in (0.0, 1e-6, -1e-6))
+    size = np.abs(on).max()
+    np.testing.assert_allclose(on, (above + below) / 2, atol=1e-5 * size)
+    assert np.abs(above - below).max() > 0.3 * size
+    (line,) = (line for line in warnings(scene(0.0)) if "lies on a joint" in line)
+    assert line.startswith("loads[0].at = [11.7, 12]") and "equal parts of the force" in line
 
 
 def test_a_pillar_reads_the_mean_of_both_sides_of_a_soft_layer():
