@@ -42,7 +42,7 @@ def load_history(scene: Scene) -> LoadHistory:
     load, amplitude = scene.load, scene.load.amplitude
     if not load.is_motion or scene.shakes_base:
         return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
-    p = calibrate(scene).at_start
+    p = calibrate(scene).at_start.at_rest
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
 
 
@@ -168,7 +168,7 @@ def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
     if frequency is None:
         return None
     sheared = scene.load.is_across or scene.load.arm is not None
-    bar = min(p.each, key=lambda one: one.bar_speed / one.spacing)
+    bar = min((one.at_rest for one in p.each), key=lambda one: one.bar_speed / one.spacing)
     speed = bar.shear_speed if sheared else bar.bar_speed
     blocks = speed / (frequency * bar.spacing)
     return ShortestWave(frequency, speed, blocks, speed / (pi * bar.spacing))

@@ -2,7 +2,7 @@
 to (7)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import inf, sqrt
 from typing import Any
 
@@ -37,6 +37,7 @@ class JointedRock:
     time_constant : Kelvin-Voigt eta of rock and ordinary joints, s; None without dashpots.
     mass_damping : alpha of a force -alpha m v on every block, 1/s; None without.
     local_damping : Cundall's factor, 0 to 1; None without.
+    closes : d_m of the ordinary joints, m; None where they do not stiffen. prestress : Pa.
     """
 
     block_count: int
@@ -51,6 +52,8 @@ class JointedRock:
     time_constant: float | None
     mass_damping: float | None
     local_damping: float | None
+    closes: float | None
+    prestress: float
 
     @property
     def area(self) -> float:
@@ -127,6 +130,22 @@ class JointedRock:
         """The same in shear, Pa/m."""
         return self._half_block(self.shear_modulus, self.intact_shear_modulus)
 
+    @property
+    def at_rest(self) -> "JointedRock":
+        """This rock as small waves meet it, under its prestress."""
+        return self.under(self.prestress)
+
+    def under(self, stress: float) -> "JointedRock":
+        """Return this rock with its joints as stiff as they are under a stress (Pa), by
+        `joints.closure`."""
+        if self.closes is None or stress <= 0:
+            return self
+        intact = self.intact_modulus or inf
+        own = joint_stiffness(self.modulus, intact, self.spacing)
+        own *= (1 + stress / (own * self.closes)) ** 2
+        same = {one.name: getattr(self, one.name) for one in fields(JointedRock)}
+        return JointedRock(**same | {"modulus": equivalent_modulus(own, intact, self.spacing)})
+
     def _half_block(self, mass: float, intact: float | None) -> float:
         """Return the stiffness of half a block (Pa/m) by the modulus of the rock mass, and that of
         intact rock, which is no less, Pa."""
@@ -164,6 +183,8 @@ def rock_of(scene: Scene) -> JointedRock:
         time_constant=eta or None,
         mass_damping=scene.damping.alpha,
         local_damping=scene.damping.local or None,
+        closes=joints.maximum_closure,
+        prestress=scene.prestress.normal if scene.prestress else 0.0,
     )
 
 

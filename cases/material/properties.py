@@ -145,7 +145,7 @@ class Properties(JointedRock, Strength):
 
     def travel_time(self, y: float) -> float:
         """Return the travel time along the homogenised bar from the start to y (m), s."""
-        slowness = np.array([1 / one.bar_speed for one in self.each])[self.segment]
+        slowness = np.array([1 / one.at_rest.bar_speed for one in self.each])[self.segment]
         arrivals = np.append(0.0, np.cumsum(slowness * np.diff(self.contact_y)))
         return float(np.interp(y, self.contact_y, arrivals))
 

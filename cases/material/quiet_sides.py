@@ -1,7 +1,8 @@
 """Impedances of the dashpots of quiet sides, of plane waves along their normals.
 
 They are, region by region, those of the effective medium of all joint sets that have a spacing, and
-of a pillar's bar: rho a along the normal and rho b across it where rock has no such sets.
+of a pillar's bar under its prestress: rho a along the normal and rho b across it where rock has no
+such sets.
 """
 
 from math import isfinite
@@ -69,7 +70,7 @@ def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]
     if not scene.is_column:
         return []
     p, along = calibrate(scene), normals[:, min(1, normals.shape[1] - 1)]
-    start, end = (scene.ends.start, p.at_start), (scene.ends.end, p.at_end)
+    start, end = (scene.ends.start, p.at_start.at_rest), (scene.ends.end, p.at_end.at_rest)
     return [start if one < 0 else end for one in along]
 
 

@@ -110,7 +110,7 @@ def _pillar(scene: Scene) -> Facts:
     """Return the rock of each segment of a pillar, with the long-wave stress 2 Z2 / (Z1 + Z2) that
     it takes from the one before."""
     p = calibrate(scene)
-    before = [None, *p.each]
+    each = [one.at_rest for one in p.each]
     ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
     segments = [
         {
@@ -128,7 +128,7 @@ def _pillar(scene: Scene) -> Facts:
             "has_joints": len(p.each) == 1 or isfinite(one.regular_own_stiffness),
             "transmission": other and 2 * one.impedance / (other.impedance + one.impedance),
         }
-        for (start, stop), one, other in zip(pairwise(ends), p.each, before, strict=False)
+        for (start, stop), one, other in zip(pairwise(ends), each, [None, *each], strict=False)
     ]
     return {"segments": segments}
 

@@ -54,7 +54,7 @@ def surroundings_of(
         patterns=patterns,
         bases=[Base("start", scene.load, direction)] * shaken,
         springs=tuple(
-            _spring(cut, name, rock, share, rotations)
+            _spring(cut, name, rock.at_rest, share, rotations)
             for name, kind, rock in zip(SIDES, kinds, rocks, strict=False)
             if kind == "matched"
         ),
@@ -63,13 +63,15 @@ def surroundings_of(
 
 def _dashpots(kind: str, rock: JointedRock) -> list[float]:
     """Return the impedances of the dashpots on a block's end, along it and across, Pa s/m."""
-    eta, beyond = rock.time_constant or 0.0, [rock.impedance, rock.shear_impedance]
-    if kind == "quiet":
-        return beyond
+    eta = rock.time_constant or 0.0
     if kind == "fixed":
         return [eta * rock.wall_stiffness, eta * rock.wall_shear_stiffness]
     if kind == "free":
         return [0.0, 0.0]
+    rock = rock.at_rest
+    beyond = [rock.impedance, rock.shear_impedance]
+    if kind == "quiet":
+        return beyond
     halves = 2 * rock.regular_stiffness, 2 * rock.regular_shear_stiffness
     return [half_spring(k, eta, z).viscosity for k, z in zip(halves, beyond, strict=True)]
 
