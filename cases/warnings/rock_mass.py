@@ -121,9 +121,10 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
     for key in ("size", "outline"):
         for value in np.ravel(getattr(scene.domain, key) or []):
             yield from of_value(f"domain.{key}", abs(float(value)), LENGTH)
-    if scene.gravity is not None and scene.gravity.direction[-1] > 0:
+    if scene.gravity is not None and scene.gravity.direction[-1] >= 0:
+        way = "upwards" if scene.gravity.direction[-1] else "sideways"
         up = "z" if scene.in_space else "y"
-        yield f"gravity.direction = {_at(scene.gravity.direction)} pulls upwards: {up} points up"
+        yield f"gravity.direction = {_at(scene.gravity.direction)} pulls {way}: {up} points up"
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:

@@ -97,6 +97,9 @@ OF_ROCK_MASSES = {
     "gravity = {direction = [0.0, 1.0], static = false}": (
         "gravity.direction = [0, 1] pulls upwards: y points up"
     ),
+    "gravity = {direction = [-1.0, 0.0], static = false}": (
+        "gravity.direction = [-1, 0] pulls sideways: y points up"
+    ),
     f'{DIPS}0.0; regions = [{{name = "r", dip = 0.0873, through = [0, 10], density = 2500.0}}]': (
         "regions[0].dip = 0.0873 degrees: 0.0873 rad is 5.002 degrees"
     ),
