@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.histories import Gabor, Ricker, Sine, periodic
-from jointwave.cases.loads import LEAST_BLOCKS, frequency_of
+from jointwave.cases.loads import LEAST_BLOCKS, frequency_of, highest_frequency
 from jointwave.cases.material.contact_points import lever
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
@@ -20,6 +20,7 @@ ONSET = 0.01  # of a load's peak: defines its beginning
 LATE = 5.0
 #: Crossings of the pillar in a period of the load's highest frequency that no wave test has.
 STATIC = 100.0
+LEAST_SAMPLES = 10  # in a period: of a sine they miss at most 5 % of its peak
 OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
 
@@ -63,6 +64,13 @@ def of_sources(
                 f"{pressed[table]} = '{held}', too, which takes half: {pulse.amplitude / 2:g} "
                 f"enters; {instead}"
             )
+    highest = highest_frequency(scene)
+    if highest is not None and (samples := 1 / (highest * scene.interval)) < LEAST_SAMPLES:
+        yield (
+            f"record.interval = {scene.interval:g} s takes {samples:.2g} samples in a period at "
+            f"{highest:.4g} Hz, below which 95 % of the energy lies: it misses peaks between them; "
+            f"{1 / (highest * LEAST_SAMPLES):.2g} s takes {LEAST_SAMPLES}"
+        )
     if scene.gravity is None or scene.gravity.static:  # else all falls
         for receiver, at in arrivals:
             if at >= end:

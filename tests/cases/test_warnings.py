@@ -144,6 +144,11 @@ PILLARS = {
         COARSE | {f"{CONTINUUM}.elements_per_block": 1, f"{CONTINUUM}.order": 2},
         COARSE | {f"{CONTINUUM}.elements_per_block": 2, f"{CONTINUUM}.order": 2},
     ),
+    # 150.1 Hz: ten samples are 0.67 ms apart
+    "record.interval = 0.0007 s takes 9.5 samples in a period at 150.1 Hz": (
+        {"load.period": 0.01, "record.interval": 7e-4},
+        {"load.period": 0.01, "record.interval": 6.6e-4},
+    ),
     # of p = 1.3 s: (1.69 - 2) / (2 (1.69 - 1)) = -0.225
     "rock.p_speed = 1040 below sqrt(2) rock.s_speed = 800 m/s gives a negative Poisson's ratio, "
     "-0.225": ({"rock.p_speed": 1040.0}, {"rock.p_speed": 1132.0}),

@@ -108,7 +108,7 @@ def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave):
     jointwave(*run, *SHORT)
     before = old.read_bytes()
     forced = ("numerics.dem.step_fraction=1.5", "numerics.dem.allow_unstable=true")
-    forced += ("record.interval=1e-3", "time.duration=3.0")
+    forced += ("record.interval=1e-3", "load.period=0.02", "time.duration=3.0")
     done = jointwave(*run, *(part for one in forced for part in ("--set", one)), code=3)
     assert done.err.count("\n") == 1 and "critical" in done.err
     assert old.read_bytes() == before
