@@ -170,11 +170,11 @@ def _misfit(comparison: Comparison, one: str, other: str | None) -> Worst:
 
 
 def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
-    """Yield the keys of [expect] that an engine is first in and that lie beyond their bound."""
+    """Yield the keys of [expect] that an engine is first in and that are not known to hold."""
     results = comparison.results
     for key, most in comparison.scene.expect.items():
         bound = bound_of(key)
         if bound.one != engine or bound.other not in results:
             continue
-        if not distance_of(bound.of, results[engine], results[bound.other]).misfit <= most:
+        if not distance_of(bound.of, results[engine], results[bound.other]).judged <= most:
             yield key
