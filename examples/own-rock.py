@@ -40,7 +40,7 @@ column = {
     "boundaries": {"left": "periodic", "right": "periodic", "bottom": "quiet", "top": "free"},
     "time": {"duration": 0.04},  # s
     "record": {"points": [[0.5, 60.0 - depth] for depth in DEPTHS], "interval": 2e-5},
-    "numerics": {"continuum": {"size": 1.0, "order": 4}},
+    "numerics": {"continuum": {"size": 0.75, "order": 4}},
 }
 scene = jw.load(column)
 
