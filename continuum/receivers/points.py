@@ -47,8 +47,8 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
     if body.joints is not None and len(body.joints.weight):
         area, each = np.repeat(body.joints.weight, dim), np.arange(len(body.joints.weight) + 1)
         turned = bsr_matrix((upwards(body.joints.frame).swapaxes(1, 2), each[:-1], each))
-        read = kron(nearest_points(found, body.joints, joints), np.eye(dim)) @ turned
-        read = csr_matrix(read).sorted_indices()
+        nearest = csr_matrix(nearest_points(found, body.joints, joints))
+        read = csr_matrix(kron(nearest, np.eye(dim)) @ turned).sorted_indices()
         read.eliminate_zeros()
     if stress is not None:
         constant[:] = [stress[i, j] for i, j in pairs]

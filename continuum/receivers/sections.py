@@ -156,7 +156,7 @@ def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_mat
     moves[x > near + NEAR * float(np.ptp(x))] = 0.0
     strained[nodes[layer]] = 1.0
     directions = np.eye(body.components)[along_first(body)]
-    w, in_layer = kron(moves, directions), diags(np.repeat(strained, body.components))
+    w, in_layer = kron(csr_matrix(moves), directions), diags(np.repeat(strained, body.components))
     elastic, viscous = (
         csr_matrix((w @ one if one is not None else 0 * w) @ in_layer)
         for one in (body.stiffness, body.damping)
@@ -175,7 +175,7 @@ def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_mat
     level = np.abs((x[own] - near)[:, :, None] / thickness - levels).argmin(axis=2)
     mass = (density * size)[:, None] * volumes * (share / whole)[level]
     inertia = np.bincount(own.ravel(), mass.ravel(), len(x))
-    return elastic, viscous, csr_matrix(kron(inertia, directions))
+    return elastic, viscous, csr_matrix(kron(csr_matrix(inertia), directions))
 
 
 def _by_stress(found: SceneBody, y: float) -> tuple[csr_matrix, ...]:
