@@ -31,6 +31,7 @@ from jointwave.compare.studies.sweep import Work, compare_scene
 from jointwave.results.dataset import energy_residual, open_ledger
 
 WORST = "worst misfit (%)"
+WHOLE = 0.9  # of the scene, over which a curve is compared without a word
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
 
 
@@ -133,6 +134,10 @@ def _show_verdicts(found: list[Comparison], every: bool) -> None:
         given = distances.xs(GIVEN)
         furthest = given["relative L2 (%)"].groupby(level=["variant", "pair"]).idxmax()
         show_frame(given.loc[furthest, ["relative L2 (%)", "peak ratio"]])
+    for beside in found[0].besides:
+        start, end = beside.time[0], beside.time[-1]
+        if end - start < WHOLE * scene.time.duration:
+            say(f"{beside.curves.name}: compared from {start:.4g} to {end:.4g} s only")
     if not every:
         say(HINT, "dim")
 

@@ -337,4 +337,8 @@ def test_command_reads_what_run_wrote(tmp_path, jointwave):
     assert {"dem", "continuum-jointed", "jointed-bar"} < rows.keys()
     (curve,) = facts["curves"]
     assert curve["samples"] == 401 and curve["moved by (s)"] == curve["outside"] == 0
-    assert "exact-lattice.nc ~ rigid blocks " in said
+    assert "exact-lattice.nc ~ rigid blocks " in said and "compared from" not in said
+    rows = [f"{t:.17g},{t}" for t in np.linspace(0.0, 0.005, 9)]
+    (tmp_path / "short.csv").write_text("time,stress@20\n" + "\n".join(rows))
+    said = jointwave("compare", *short, "--no-spectral", "--with", tmp_path / "short.csv").out
+    assert "short.csv: compared from 0 to 0.005 s only" in said
