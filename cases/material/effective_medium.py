@@ -40,15 +40,22 @@ class JointSet:
     shear_compliance: float = 0.0
 
 
-def compliant(sets: Iterable[schema.JointSet], dimension: int = 2) -> list[JointSet]:
-    """Return the sets of a scene that have a spacing; a single joint is not a medium."""
+def compliant(
+    sets: Iterable[schema.JointSet], dimension: int = 2, stress: np.ndarray | None = None
+) -> list[JointSet]:
+    """Return the sets of a scene that have a spacing; a single joint is not a medium.
+
+    stress : that has closed joints which stiffen, compression positive [d, d], Pa.
+    """
     found = []
     for one in sets:
         if one.spacing:
             assert one.normal_stiffness and one.shear_stiffness
-            laws = one.normal_stiffness, one.shear_stiffness
-            Z = (1 / (one.spacing * stiffness) for stiffness in laws)
-            found.append(JointSet(attitude(one, dimension)[0], *Z))
+            n, normal = attitude(one, dimension)[0], one.normal_stiffness
+            if one.maximum_closure and stress is not None:
+                normal *= (1 + max(n @ stress @ n, 0.0) / (normal * one.maximum_closure)) ** 2
+            Z = (1 / (one.spacing * stiffness) for stiffness in (normal, one.shear_stiffness))
+            found.append(JointSet(n, *Z))
     return found
 
 

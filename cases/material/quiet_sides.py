@@ -27,9 +27,10 @@ def impedances(scene: AnyScene, normals: np.ndarray, region: np.ndarray) -> np.n
         return along_and_across(normals, np.array(ends).reshape(-1, 2))
     dim = normals.shape[1]
     found, scenes = np.zeros((len(normals), dim, dim)), within(scene, scene.joint_sets)
+    stress = None if scene.prestress is None else scene.prestress.tensor[:dim, :dim]
     for own in np.unique(region):
         there, rock = region == own, elastic_rock(scenes[own].rock)
-        if sets := compliant(scenes[own].joint_sets, dim):
+        if sets := compliant(scenes[own].joint_sets, dim, stress):
             C = stiffness(rock, sets, dim)
             found[there] = impedance(C, scenes[own].rock.density, normals[there])
         else:
