@@ -12,11 +12,18 @@ import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import label_of, solver, solvers
-from jointwave.compare.misfit.alignment import AlignedCurve, distance_at, motions
+from jointwave.compare.misfit.alignment import (
+    AlignedCurve,
+    distance_at,
+    motions,
+    static_level,
+)
 from jointwave.compare.misfit.metrics import Distance, distance, pairings
 from jointwave.compare.misfit.places import Place, shown
 from jointwave.compare.misfit.ranking import kind_of
+from jointwave.compare.misfit.weight import CARRIES
 from jointwave.compare.solvers.record import Kind
+from jointwave.results.labels import UNITS
 
 
 class Pair(NamedTuple):
@@ -143,9 +150,19 @@ def measure_curves(
 
 
 def unit_doubts(found: Comparison) -> Iterator[str]:
-    """Yield which external curves without a unit have another size than the first solution."""
+    """Yield which external curves without a unit have another size than the first solution, and
+    which stresses begin without the static one of the scene."""
     first = next(iter(found.results), "")
     for beside in found.besides:
+        for place, values in beside.curves.waveforms.items() if first else ():
+            held = static_level(place, found.results[first])
+            if place.quantity in UNITS[0] and abs(held) > max(
+                2 * abs(values[0]), CARRIES * abs(values).max()
+            ):
+                yield (
+                    f"{beside.curves.file}: {place} begins at {values[0]:.3g} Pa, the scene at "
+                    f"{held:.3g} Pa: stress is total, with what is there at rest"
+                )
         pair = Pair(beside.curves.name, first, GIVEN)
         for row in (one for one in found.rows if one.pair == pair):
             bare = next(filter(row.place.is_at, beside.curves.bare), None)

@@ -326,6 +326,16 @@ def test_a_curve_without_a_unit_is_doubted_where_its_size_is_another(
     assert all("stress@20 has no unit" in one and "1.0e-06 times" in one for one in lines)
 
 
+@pytest.mark.parametrize(("held", "said"), [(0.0, True), (5e6, False)])
+def test_a_stress_without_what_is_there_at_rest_is_doubted(held, said, scene, tmp_path):
+    """As a strain gauge measures it; the scene is prestressed by 5 MPa."""
+    time, stress = sampled(scene)
+    pressed = scene.model_copy(update={"prestress": Prestress(normal=5e6)})
+    file = save(tmp_path / "curve.csv", time, held + stress)
+    (line, *_) = [*unit_doubts(compare(pressed, read_curves([file], [pressed]))), ""]
+    assert ("stress@20 begins at 0 Pa, the scene at 5e+06 Pa: stress is total" in line) == said
+
+
 def test_command_reads_what_run_wrote(tmp_path, jointwave):
     short = [SCENE, "--variant", "", "--set", "time.duration=0.02"]
     jointwave("run", *short, "--engine", "exact", "--model", "lattice", "--out", tmp_path)
