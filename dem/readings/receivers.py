@@ -43,14 +43,16 @@ class Stencil(NamedTuple):
 class Receivers(NamedTuple):
     """Receivers as linear combinations of blocks and contacts.
 
-    places : blocks that are read [r]. volume : of each [r], m^d. touching : contacts of the places
-    [k, 3]: row of `watched`, place, and whether the place is block j. watched : contacts that are
-    read [w]. faces : these contacts. motion : matrix [points d, r F], of the places' freedoms.
-    weights : matrix [points, r]. joints : matrix [joints, w].
+    places : blocks that are read [r]. volume, second : of each, m^d [r], and its second moments,
+    m^(d + 2) [r, d, d]. touching : contacts of the places [k, 3]: row of `watched`, place, and
+    whether the place is block j. watched : contacts that are read [w]. faces : these contacts.
+    motion : matrix [points d, r F], of the places' freedoms. weights : matrix [points, r]. joints :
+    matrix [joints, w].
     """
 
     places: np.ndarray
     volume: np.ndarray
+    second: np.ndarray
     touching: np.ndarray
     watched: np.ndarray
     faces: Contacts
@@ -76,7 +78,7 @@ def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndar
         raise SceneError(scene.where, f"record.points[{lost[0]}]", place, "must lie in rock")
     along = scene.numerics.dem.block is not None
     at_joints = stencils_on_joints(blocks, joints, sets, along) if len(joints) else []
-    return read_by(blocks.volume, faces, onto, at_points, at_joints)
+    return read_by(blocks, faces, onto, at_points, at_joints)
 
 
 def stencils_at(scene: RockMass, blocks: Blocks, points: np.ndarray) -> list[Stencil]:
@@ -158,7 +160,7 @@ def _stencil(
 
 
 def read_by(
-    volume: np.ndarray,
+    blocks: Blocks,
     faces: Contacts,
     onto: np.ndarray,
     points: list[Stencil],
@@ -180,7 +182,8 @@ def read_by(
         motion += kron(_matrix(arms, places), turn)
     return Receivers(
         places=places,
-        volume=volume[places],
+        volume=blocks.volume[places],
+        second=blocks.second_moment[places],
         touching=np.stack([np.searchsorted(watched, contact), place, side], axis=1),
         watched=watched,
         faces=faces.some(watched),
@@ -190,12 +193,13 @@ def read_by(
     )
 
 
-def everywhere(volume: np.ndarray, faces: Contacts) -> Receivers:
+def everywhere(blocks: Blocks, faces: Contacts) -> Receivers:
     """Return receivers of all blocks and contacts, without points."""
-    contact, side = np.nonzero(faces.blocks < len(volume))  # others are walls
+    contact, side = np.nonzero(faces.blocks < blocks.count)  # others are walls
     touching = np.stack([contact, faces.blocks[contact, side], side], axis=1)
     all_faces, none = np.arange(len(faces.area)), csr_matrix((0, 0))
-    return Receivers(np.arange(len(volume)), volume, touching, all_faces, faces, none, none, none)
+    sizes = np.arange(blocks.count), blocks.volume, blocks.second_moment
+    return Receivers(*sizes, touching, all_faces, faces, none, none, none)
 
 
 def _matrix(stencils: list[Stencil], columns: np.ndarray) -> csr_matrix:

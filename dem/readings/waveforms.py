@@ -1,13 +1,12 @@
 """Receivers of a rock mass, at points and on joints, in the form of results.
 
 The mean stress of a block follows from the forces on it (Love 1927; Weber 1966): with arms x from
-the centroid and forces F,
+the centroid and forces F, S_ij = sum of x_i F_j, less the inertia of the block's rotation, which
+the moment S_ij - S_ji turns: along the principal axes of its second moments m,
 
-    V sigma_ij = sum of x_i F_j,
+    V sigma_ij = (m_j S_ij + m_i S_ji) / (m_i + m_j),
 
-its symmetric part, tension positive. The inertia of a block's rotation adds to the shear stress,
-in the plane rho (I_xx - I_yy) / 2 times the angular acceleration; it is zero for squares and cubes
-and left out.
+tension positive. At rest, and of squares and cubes, it is the symmetric part of S.
 
 Samples of contacts have the rows, in the contact's frame: force on block j [d], first moments of
 the traction over the face about its centre, by axes in the face and then components [d - 1, d],
@@ -35,7 +34,7 @@ class PointsAndJoints(Receivers):
 
     def of_all(self, blocks: Any) -> PointsAndJoints:
         """Return receivers of all blocks and contacts."""
-        return PointsAndJoints(*everywhere(blocks.cut.volume, blocks.contacts))
+        return PointsAndJoints(*everywhere(blocks.cut, blocks.contacts))
 
     def shown(
         self, system: BlockSystem, samples: Samples, sample: int
@@ -130,7 +129,11 @@ def mean_stress(
         own += np.einsum("cbi,cak,cban->cikn", faces.frame[:, 1:], faces.frame, moment)[row]
     sums = np.zeros((len(receivers.places), dim, dim, count)) if outside is None else outside
     np.add.at(sums, place, np.where(side, 1.0, -1.0)[:, None, None, None] * own)
-    mean = -(sums + sums.swapaxes(1, 2)) / (2 * receivers.volume)[:, None, None, None]
+    moments, axes = np.linalg.eigh(receivers.second)
+    share = moments[:, None] / (moments[:, :, None] + moments[:, None])
+    part = share[..., None] * np.einsum("rai,rabn,rbj->rijn", axes, sums, axes)
+    mean = np.einsum("rai,rijn,rbj->rabn", axes, part + part.swapaxes(1, 2), axes)
+    mean /= -receivers.volume[:, None, None, None]
     return np.stack([mean[:, i, j] for i, j in stress_components(dim).values()], axis=-1)
 
 

@@ -14,6 +14,7 @@ from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.geometry.measure import frames_of
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.read import load_tables
 from jointwave.compare.runs.field_files import write_pvd
 from jointwave.dem.blocks.rock_mass import blocks_of as rigid_blocks
 from jointwave.dem.contacts.faces import Contacts
@@ -25,6 +26,7 @@ from jointwave.dem.readings.receivers import (
 )
 from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, triangles
 from jointwave.dem.readings.waveforms import at_points, mean_stress, quantities
+from jointwave.dem.run import simulate
 from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.rock_mass import rock_mass_dataset
 from jointwave.results.snapshots import snapshots_of
@@ -85,7 +87,7 @@ def at(found, stencils):
     """Receivers at points of blocks that rotate."""
     dim = found.body.dim
     onto = freedoms_of(dim, ROTATIONS[dim])
-    return read_by(found.volume, all_faces(found)[0], onto, stencils, [])
+    return read_by(found, all_faces(found)[0], onto, stencils, [])
 
 
 def inside(found, count, seed=0):
@@ -185,10 +187,36 @@ def test_a_stress_in_equilibrium_is_the_mean_stress_of_every_block(dim, uniform)
     S, gradient = field(dim)
     gradient = 0 * gradient if uniform else gradient
     contact = samples_of(faces, centroid, second, S, gradient)
-    stress = mean_stress(everywhere(found.volume, faces), contact)
+    stress = mean_stress(everywhere(found, faces), contact)
     expected = S + np.einsum("ijk,nk->nij", gradient, found.centroid)
     expected = np.stack([expected[:, i, j] for i, j in stress_components(dim).values()], axis=1)
     np.testing.assert_allclose(stress[:, 0], expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("depth", ([], [2.0]), ids=["plane", "space"])
+def test_a_block_that_a_force_turns_has_its_inertia_in_its_mean_stress(depth):
+    """On a joint that all but lets it go, a = 1 m wide and h = 4 m high, pushed by F along x at its
+    upper right corner: V sigma = h F / 4 - alpha rho (m_h - m_a) / 2, with alpha = h F / 2 rho
+    (m_a + m_h) and second moments as a^2 to h^2, is F a^2 h / (2 (a^2 + h^2))."""
+    across = [x / 2 for x in depth]
+    push = {"kind": "force", "quantity": "force", "shape": "half-sine", "amplitude": 1e5}
+    push |= {"at": [1.0, *across, 5.0], "direction": [1.0, *(0 * x for x in across), 0.0]}
+    loose = {"name": "loose", "dip": 0.0, "through": [0.0, *across, 1.0]}
+    tables = {
+        "title": "a loose block",
+        "domain": {"size": [1.0, *depth, 5.0]},
+        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+        "joint_sets": [loose | {"normal_stiffness": 1e4, "shear_stiffness": 1e4}],
+        "loads": [push | {"period": 0.1}],
+        "time": {"duration": 0.02},
+        "record": {"points": [[0.3, *across, 1.9]], "interval": 1e-3},
+    }
+    found = simulate(load_tables(tables))
+    pushed, volume = 1e5 * np.sin(np.pi * found.time / 0.05), 4.0 * np.prod(depth)
+    for component, sums in {"xz" if depth else "xy": 4 / 34, "xx": 1 / 2}.items():
+        stress = -found.stress.sel(stress_component=component)[0]
+        off = (stress * volume - sums * pushed)[1:]  # the first is the mean from half a step before
+        assert np.abs(off).max() < 2e-3 * 1e5
 
 
 @DIMENSIONS
@@ -198,7 +226,7 @@ def test_what_acts_from_outside_counts_as_contacts_do(dim):
     found = blocks(dim)
     faces, centroid, second = all_faces(found)
     contact = samples_of(faces, centroid, second, *field(dim))
-    receivers, inner = everywhere(found.volume, faces), np.arange(len(found.contacts))
+    receivers, inner = everywhere(found, faces), np.arange(len(found.contacts))
     whole = mean_stress(receivers, contact)
     only = contact.copy()
     only[inner] = 0
@@ -206,7 +234,7 @@ def test_what_acts_from_outside_counts_as_contacts_do(dim):
     part = mean_stress(receivers, only)[:, 0] * -found.volume[:, None]
     for (i, j), values in zip(stress_components(dim).values(), part.T, strict=True):
         outside[:, i, j, 0] = outside[:, j, i, 0] = values
-    within = everywhere(found.volume, faces.some(inner))
+    within = everywhere(found, faces.some(inner))
     other = mean_stress(within, contact[inner], outside)
     np.testing.assert_allclose(other, whole, rtol=0, atol=1e-12 * np.abs(whole).max())
 
@@ -234,7 +262,7 @@ def test_joint_receivers_read_the_nearest_contact_or_along_the_joint(dim):
     faces = faces.some(np.arange(inner))
     for along in (False, True):
         stencils = stencils_on_joints(found, points, 1, along)
-        receivers = read_by(found.volume, faces, freedoms_of(dim, 0), [], stencils)
+        receivers = read_by(found, faces, freedoms_of(dim, 0), [], stencils)
         two = contact[receivers.watched] * [0.0, 1.0]  # the first sample counts as the start
         got = quantities(receivers, *np.zeros((2, 0, dim, 2)), two)
         assert set(got) == {"traction", "gap", *(("slip",) if dim > 1 else ())}
