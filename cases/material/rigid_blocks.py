@@ -93,7 +93,7 @@ def rigid_joints(
             at = one.direction[k] if pair[0] == pair[1] else one.parallel_to(normal)
             row += one.excess(at) / 2
     real = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
-    own = np.array([*real, *([(np.inf, np.inf)] * len(further))], dtype=float)
+    own = np.array([*real, *([(np.inf, np.inf)] * len(further))], dtype=float).reshape(-1, 2)
     with np.errstate(divide="ignore"):
         normal, shear = (1 / (1 / own[kinds[:, 0]] + excess)).T
     return RigidJoints(normal, shear, excess.T, kinds, max(one.left_over for one in shares))

@@ -82,6 +82,9 @@ def blocks_of(scene: RockMass) -> BlocksOfRockMass:
     present = {sides[k] for k in np.unique(cut.boundary.side)}
     walls = tuple(one for one in scene.boundaries.sides("fixed", "roller") if one in present)
     contacts = contacts_of(cut, across, sides, walls)
+    if not len(contacts.area):
+        why = "leaves one block without a joint: make it smaller"
+        raise SceneError(scene.where, "numerics.dem.block", scene.numerics.dem.block, why)
     kinds, column = _columns(scene, cut, contacts, len(further))
     alone = np.flatnonzero(column == NO_SET)
     column[alone] = len(kinds) + np.arange(len(alone))

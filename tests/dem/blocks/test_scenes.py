@@ -178,6 +178,26 @@ def test_the_ledger_of_a_shaken_base_closes(rock_mass):
     assert result.displacement.values[0, -1] == pytest.approx(moved, rel=0.02)
 
 
+@pytest.mark.parametrize("right", ["free", "fixed"])
+def test_rock_that_stays_one_block_is_refused_unless_a_wall_holds_it(right, rock_mass):
+    """Before a fixed side it rests on confined rock from there to its centroid, 60 GPa / 6 m."""
+    push = {"kind": "pressure", "side": "left", "shape": "half-sine", "amplitude": 1e6}
+    scene = rock_mass(
+        joint_sets=[],
+        loads=[push | {"period": 1.0}],
+        boundaries={"left": "free", "right": right, "bottom": "free", "top": "free"},
+        record={"points": [[6.0, 5.0]], "joints": None},
+        numerics={"dem": {"block": 50.0}},
+        time={"duration": 0.25},
+    )
+    if right == "free":
+        with pytest.raises(SceneError, match=r"block = 50.*: leaves one block without a joint"):
+            simulate(scene)
+    else:
+        moved = simulate(scene).displacement.sel(axis="x").values[0, -1]
+        assert moved == pytest.approx(1e6 * 6 / 6e10, rel=0.02)
+
+
 def test_joints_and_snapshots_are_recorded_without_points(rock_mass):
     loads, fields = [PRESSURE | {"side": "left"}], {"fields": 1e-3}
     one, other = (
