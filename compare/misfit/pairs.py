@@ -18,10 +18,10 @@ from jointwave.compare.misfit.alignment import (
     motions,
     static_level,
 )
-from jointwave.compare.misfit.metrics import Distance, distance, pairings
-from jointwave.compare.misfit.places import Place, shown
+from jointwave.compare.misfit.metrics import Distance, distance, motion, pairings, rms
+from jointwave.compare.misfit.places import Place, shown, waveforms
 from jointwave.compare.misfit.ranking import kind_of
-from jointwave.compare.misfit.weight import CARRIES
+from jointwave.compare.misfit.weight import CARRIES, weigh
 from jointwave.compare.solvers.record import Kind
 from jointwave.results.labels import UNITS
 
@@ -139,13 +139,22 @@ def measure(
 def measure_curves(
     beside: AlignedCurve, results: dict[str, xr.Dataset], spectral: bool = False
 ) -> list[Row]:
-    """Return the distances of a file's curves from every solution that has a waveform there."""
+    """Return the distances of a file's curves from every solution that has a waveform there; faint
+    is what a solution does not excite, unless the curve moves there enough to decide."""
     rows, time, own = [], beside.time, beside.curves.time
     for name, result in results.items():
+        moved = {place: rms(wave) for place, wave in waveforms(motion(result)).items()}
+        weight = weigh([*moved], np.array([*moved.values()]))
+        still = {
+            place: least * norm
+            for place, norm, least, excited in zip(moved, *weight, strict=True)
+            if not excited
+        }
         for place, values, ours in motions(beside.curves, result):
             waves = np.interp(time, own, values), np.interp(time, result.time.values, ours)
             found, pair = distance_at(time, *waves, spectral), Pair(beside.curves.name, name, GIVEN)
-            rows.append(Row(pair, shown(place, result), found))
+            faint = rms(waves[0] - waves[1]) < still.get(place, 0.0)
+            rows.append(Row(pair, shown(place, result), found, faint=faint))
     return rows
 
 
