@@ -26,6 +26,7 @@ FLAT = 0.05
 #: Of a value that triangles have, the part of the neighbours: those that point up and those that
 #: point down are displaced against each other by the strain times their size.
 SHARED = 0.5
+TRIANGLE = 3  # neighbours of a triangle within rock
 #: Of a contact's size: the distance below which it shares a corner, or lies in one plane.
 SAME = 1e-6
 
@@ -95,12 +96,12 @@ def stencils_in_rock(
 
     sets : number of joint sets. shared : whether SHARED of the value itself is the neighbours'.
     """
-    near, full = rock_neighbours(blocks, sets), blocks.body.dim + 1
-    found = []
+    near, found = rock_neighbours(blocks, sets), []
+    least = TRIANGLE if shared and blocks.body.dim == 2 else 0
     for k, (at, own) in enumerate(zip(points, sides, strict=True)):
         for block in own:
             beside = near.get(block, [])
-            like = {j for i in beside for j in near[i]} if shared and len(beside) < full else set()
+            like = {j for i in beside for j in near[i]} if len(beside) < least else set()
             others = [*beside, *sorted(like - {block, *beside})]
             part = np.isin(others, beside) if shared else None
             found.append(_stencil(k, [block, *others], blocks.centroid, at, part, 1 / len(own)))
@@ -152,6 +153,7 @@ def _stencil(
     mean, terms, aim = np.zeros(len(apart)), apart, off
     if beside is not None:
         mean = SHARED * beside / beside.sum()
+    if beside is not None and not beside.all():
         length = np.linalg.norm(apart, axis=1).mean()
         terms, aim = np.column_stack([apart, length * beside]), np.append(off, length * SHARED)
     weight = np.linalg.pinv(terms.T, rcond=FLAT) @ (aim - mean @ terms) + mean
