@@ -18,7 +18,7 @@ import numpy as np
 from jointwave.continuum.stepping.arrays import BOUNDARY, FRICTION, VISCOUS, WORK, StepFlags
 from jointwave.continuum.stepping.memory import relax, strain
 from jointwave.continuum.stepping.product import product_for, stride_of
-from jointwave.continuum.stepping.tractions import tractions_for
+from jointwave.continuum.stepping.tractions import components, tractions_for
 from jointwave.joints.formula import formula
 from jointwave.numerics.borrowed import borrowed
 from jointwave.numerics.denormals import flush_denormals, restore_denormals
@@ -72,6 +72,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     dim, law, damped, ledger = flags.dim, flags.law, flags.damped, flags.ledger
     relaxing = flags.relaxing
     multiply, stride = product_for(flags.product, dim), stride_of(flags.product)
+    ONE, TWO = np.uint64(stride), np.uint64(2 * stride)
     sprung, jointed = flags.sprung, law is not None
     dashpots, rated = (False, False) if law is None else (law.dashpots, law.limited)
     viscous = damped or dashpots
@@ -83,23 +84,32 @@ def leapfrog_for(flags: StepFlags) -> Callable:
     def times(jumps, x, product):
         """Set the jumps of a vector."""
         for q in range(jumps.first.shape[0]):
-            i, j = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1])
+            i, j, e = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1]), jumps.frame
+            u, v, w = x[j] - x[i], 0.0, 0.0  # read once: what is set might be part of x
+            if dim > 1:
+                v = x[j + ONE] - x[i + ONE]
+            if dim > 2:
+                w = x[j + TWO] - x[i + TWO]
             for a in range(dim):
-                found = 0.0
-                for c in range(dim):
-                    o = np.uint64(c * stride)
-                    found += jumps.frame[q, a, c] * (x[j + o] - x[i + o])
+                found = e[q, a, 0] * u
+                if dim > 1:
+                    found += e[q, a, 1] * v
+                if dim > 2:
+                    found += e[q, a, 2] * w
                 product[dim * q + a] = found
 
     @formula
     def add_transposed(jumps, x, force):
         """Add forces that do as much work as x does with the jumps."""
         for q in range(jumps.first.shape[0]):
-            i, j = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1])
+            i, j, e = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1]), jumps.frame
+            u, v, w = components(dim, x, q)
             for c in range(dim):
-                found, o = 0.0, np.uint64(c * stride)
-                for a in range(dim):
-                    found += jumps.frame[q, a, c] * x[dim * q + a]
+                found, o = e[q, 0, c] * u, np.uint64(c * stride)
+                if dim > 1:
+                    found += e[q, 1, c] * v
+                if dim > 2:
+                    found += e[q, 2, c] * w
                 force[i + o] -= found
                 force[j + o] += found
 
