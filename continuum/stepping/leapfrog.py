@@ -46,10 +46,8 @@ class Leapfrog:
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body, parts = problem, dt, problem.body, problem.parts
         self.product, self._damping = products_for_steps(body)
-        node, component = np.divmod(np.arange(np.diff(body.stiffness.shape)[0]), body.components)
-        tile, lane = np.divmod(node, self.product.stride)
-        self.halo = (tile * body.components + component) * self.product.stride + lane
-        self.halo += self.product.size
+        own, every = body.stiffness.shape
+        self.halo = self.product.beyond(every - own, body.components)
         self.samples = samples_for(problem.readings, samples, energy)
         self.constants = c = self._constants()
         many, springs, damped = c.memory.share.size, c.quiet.stiffness, body.damping is not None

@@ -47,6 +47,12 @@ class Product(NamedTuple):
         """How far the freedoms of a node are apart in vectors."""
         return stride_of(self.kind)
 
+    def beyond(self, count: int, dim: int) -> np.ndarray:
+        """Return where further freedoms are, int array [count], behind all others: d of a node."""
+        node, component = np.divmod(np.arange(count), dim)
+        tile, lane = np.divmod(node, self.stride)
+        return self.size + (tile * dim + component) * self.stride + lane
+
 
 def stride_of(kind: str) -> int:
     """Return how far the freedoms of a node are apart in vectors of a kind of product."""
