@@ -19,8 +19,8 @@ from jointwave.cases.histories import LoadHistory
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.partition.joints import region_at, rocks_of
+from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import Wave
 
 #: Of i and j the index of the component of a stress: of xx; xx, yy, xy; xx, yy, zz, xy, yz, xz.
 COMPONENT = {

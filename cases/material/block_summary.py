@@ -13,8 +13,7 @@ from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes
 from jointwave.cases.partition.shape import shape_of
-from jointwave.cases.schema.plane import REST
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import REST, RockMass
 
 #: What the sizes of blocks and of contacts are, by the number of dimensions.
 SIZES = {2: ("area", "length"), 3: ("volume", "area")}

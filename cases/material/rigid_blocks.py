@@ -1,7 +1,7 @@
 """The stiffness of joints between rigid blocks, which carry the compliance of the rock as well.
 
 Every direction of joints gets an excess compliance Z0 (1/Pa, normal and shear, not negative) that
-together come nearest to the intact rock (`rigid_fit`), and a contact between blocks
+together come nearest to the intact rock (`effective_medium`), and a contact between blocks
 
     1 / K' = 1 / K + Z0 h,
 
@@ -20,8 +20,12 @@ from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material import effective_medium
-from jointwave.cases.material.effective_medium import compliant, intact, joints_alone
-from jointwave.cases.material.rigid_fit import nearest_stiffness
+from jointwave.cases.material.effective_medium import (
+    compliant,
+    intact,
+    joints_alone,
+    nearest_stiffness,
+)
 from jointwave.cases.material.rock import elastic_rock, shear_modulus
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
 from jointwave.cases.partition.joints import attitude, rocks_of, within

@@ -10,7 +10,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from jointwave.cases.schema.plane import IntactRock
+from jointwave.cases.schema.rock_mass import IntactRock
 
 Values = float | np.ndarray
 

@@ -9,8 +9,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.partition.joints import attitude, rocks_beside
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import IntactRock
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import IntactRock, RockMass
 
 SLACK = 1e-9  # of the stress: tractions that are at a limit
 

@@ -9,8 +9,7 @@ import shapely
 from jointwave.cases.geometry.sets import PlaneSet
 from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, corners_of, polygon_solid
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import REST, IntactRock, Region
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import REST, IntactRock, Region, RockMass
 
 #: Cosine and sine of dips, degrees, that are exact.
 EXACT = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0)}

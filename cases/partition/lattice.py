@@ -20,8 +20,7 @@ from jointwave.cases.partition.joints import ROCK, attitude, dips_of, within
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import REST
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import REST, RockMass
 
 #: Blocks from a side to the nearest plane, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
@@ -152,8 +151,8 @@ def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
 def squared(scene: RockMass) -> bool:
     """Return whether cuts across joints of one direction are at right angles to them.
 
-    Triangles and tetrahedra can have any Poisson's ratio (`material.rigid_fit`), boxes none; but
-    the faces of boxes can run along periodic sides, which cut no block in two then.
+    Triangles and tetrahedra can have any Poisson's ratio (`material.effective_medium`), boxes none;
+    but the faces of boxes can run along periodic sides, which cut no block in two then.
     """
     normals = (attitude(one, scene.domain.dimension)[0] for one in scene.joint_sets)
     fit = all(np.abs(normal).max() == 1 for normal in normals)

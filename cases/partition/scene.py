@@ -20,8 +20,7 @@ from jointwave.cases.partition.joints import attitude, bounded, plane_sets
 from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import Region
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import Region, RockMass
 from jointwave.cases.size import LIMIT, memory, spoken
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.

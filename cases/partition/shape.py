@@ -19,7 +19,7 @@ from jointwave.cases.geometry.solids import (
     prism,
 )
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.sources import PlaneLoad
+from jointwave.cases.schema.pulse import PlaneLoad
 
 #: By the number of dimensions: two for each axis, and what lies on none of them.
 SIDES = {

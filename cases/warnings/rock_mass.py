@@ -17,8 +17,8 @@ from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import PlaneLoad, Wave
 from jointwave.cases.warnings.sources import of_resolution, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for

@@ -14,7 +14,7 @@ from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.sources import Wave
+from jointwave.cases.schema.pulse import Wave
 from jointwave.compare.exact.rock_mass.effective_medium import MediumField
 from jointwave.compare.exact.rock_mass.field import field_of
 

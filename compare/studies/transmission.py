@@ -28,8 +28,7 @@ from jointwave.cases.errors import SceneError, require
 from jointwave.cases.material.rock import Values, elastic_rock
 from jointwave.cases.partition.joints import attitude
 from jointwave.cases.read import load as scenes_of
-from jointwave.cases.schema.plane import IntactRock
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import IntactRock, RockMass
 from jointwave.compare.engines import Progress, names, solve
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint

@@ -12,9 +12,8 @@ from jointwave.cases.loads import force_history, step_means
 from jointwave.cases.material.quiet_sides import base_traction
 from jointwave.cases.partition.shape import BESIDE, loaded_lines, shape_of
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.pulse import PlaneLoad, shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.continuum.loads.ends import end_force
 from jointwave.continuum.loads.sides import facets_on, impedances_of, inside
 from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces

@@ -13,9 +13,8 @@ from jointwave.cases.material.quiet_sides import base_traction, borne, impedance
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.partition.shape import covered
 from jointwave.cases.sampling import Clock
-from jointwave.cases.schema.pulse import shortest_period
+from jointwave.cases.schema.pulse import PlaneLoad, shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.dem.readings.receivers import stencils_at
 from jointwave.dem.sides.boundaries import facets_on, points_on
 from jointwave.dem.sides.loads import Pattern, Source, reactions

@@ -10,9 +10,8 @@ from jointwave.cases.partition.joints import attitude, strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.law_parts import PARTS
-from jointwave.cases.schema.plane import Region
-from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import Wave
+from jointwave.cases.schema.pulse import Wave
+from jointwave.cases.schema.rock_mass import Region, RockMass
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
 #: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:

@@ -26,8 +26,8 @@ from jointwave.cases.loads import history_of
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.sampling import sample_times
+from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.rock_mass.conditions import (
     Face,
     all_parallel,

@@ -28,8 +28,7 @@ from jointwave.cases.partition.joints import attitude, strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import REST, Boundaries, Region
-from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.cases.schema.rock_mass import REST, Boundaries, Region, RockMass
 from jointwave.compare.exact.plane import layer_pulses
 from jointwave.compare.exact.rock_mass import normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (

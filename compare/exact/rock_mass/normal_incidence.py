@@ -18,8 +18,8 @@ from jointwave.cases.incident import PlaneWave, WaveMotion, plane_wave
 from jointwave.cases.loads import history_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.law_parts import PARTS, tangent
+from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.joint import closing_joint, slip_phases
 from jointwave.compare.exact.joint.closing_joint import ClosingJoint
 from jointwave.compare.exact.joint.one_joint import around

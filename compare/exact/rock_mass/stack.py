@@ -17,8 +17,8 @@ from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.partition.joints import attitude, rocks_of, strata
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import TOLERANCE, shape_of
+from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import Wave
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
 from jointwave.compare.exact.plane.pulse import PulseStack

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.artist import Artist
 
 from jointwave.cases.partition.shape import Shape
+from jointwave.cases.schema.pulse import PlaneLoad
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.schema.sources import PlaneLoad
 from jointwave.compare.figures.drawing.sketch import gravity, note, pushing, receivers, shaking
 from jointwave.results.stress import stress_components
 

@@ -8,7 +8,7 @@ from jointwave.cases.material.closure import bandis_closure, stress_in_reach
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rock_mass import beyond_strength, set_time_constants
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.plane import InSituStress
+from jointwave.cases.schema.rock_mass import InSituStress
 
 
 def damped(rock_with, *sets, **tables):

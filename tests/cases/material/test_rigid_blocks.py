@@ -9,9 +9,13 @@ from scipy.linalg import block_diag, eigh
 
 from closed_forms.block_lattice import Lattice, modes
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.effective_medium import JointSet, compliance, intact
+from jointwave.cases.material.effective_medium import (
+    JointSet,
+    compliance,
+    intact,
+    nearest_stiffness,
+)
 from jointwave.cases.material.rigid_blocks import rigid_joints
-from jointwave.cases.material.rigid_fit import nearest_stiffness
 from jointwave.cases.material.rock import ElasticRock
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.dem.prepare import blocks_of

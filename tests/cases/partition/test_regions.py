@@ -6,7 +6,7 @@ import pytest
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.partition.joints import ROCK, region_at
 from jointwave.cases.partition.scene import blocks_of_domain as cut
-from jointwave.cases.schema.plane import Region
+from jointwave.cases.schema.rock_mass import Region
 
 
 def region(name, y, dip=0.0, x=0.0):

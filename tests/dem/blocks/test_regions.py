@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.schema.plane import Boundaries
+from jointwave.cases.schema.rock_mass import Boundaries
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.misfit.metrics import relative_l2
