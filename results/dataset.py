@@ -10,12 +10,12 @@ import xarray as xr
 
 from jointwave.cases.effects import active_effects
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings import warnings
-from jointwave.results.labels import label
+from jointwave.results.labels import AXES, label
+from jointwave.results.stress import stress_components
 
-#: All terms of an energy ledger, and those of axial motion with joints that do not break.
-ALL_TERMS = (
+#: Terms of an energy ledger.
+TERMS = (
     "kinetic",
     "elastic",
     "viscous",
@@ -25,18 +25,25 @@ ALL_TERMS = (
     "gravity",
     "work",
 )
-TERMS = ("kinetic", "elastic", "viscous", "boundary", "work")
 
-#: Dimensions of each quantity except time, its receivers or the terms of the ledger first.
-DIMENSIONS: dict[str, tuple[str, ...]] = {
-    "stress": ("stress_y",),
-    "shear": ("stress_y", "across"),
-    "velocity": ("velocity_y", "axis"),
-    "displacement": ("velocity_y", "axis"),
-    "rotation": ("velocity_y", "axis"),
-    "energy": ("term",),
+OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
+#: The dimension of the components of each quantity that may have several, and their names.
+COMPONENTS = {
+    "stress": "stress_component",
+    "shear": "across",
+    **dict.fromkeys(("velocity", "displacement", "rotation"), "axis"),
+    "traction": "joint_axis",
+    "slip": "slip_axis",
+}
+NAMES: dict[str, dict[int, Sequence[str]]] = {
+    "stress_component": {len(of): tuple(of) for of in map(stress_components, (2, 3))},
+    "across": {2: "xz"},
+    "axis": {1: "y", 2: "xy", 3: "xyz"},
+    "joint_axis": {2: ("n", "s"), 3: ("n", "strike", "dip")},
+    "slip_axis": {2: ("strike", "dip")},
 }
 
+Coordinates = dict[str, tuple[tuple[str, ...], np.ndarray]]
 A_RESULT = "a result: a Dataset, of `simulate` or a file"  # what functions accept
 MOST_OPEN = 1e-3  # of a ledger's largest term, that no term may account for
 #: Of the energy at rest, a billion times the round-off of double precision: soft joints let stiff
@@ -62,87 +69,88 @@ def scene_hash(scene: AnyScene, text: str | None = None) -> str:
 
 
 def dataset(
-    scene: Scene,
+    scene: AnyScene,
     engine: str,
     time: np.ndarray,
-    stress: np.ndarray,
-    velocity: np.ndarray,
-    displacement: np.ndarray | None = None,
+    quantities: Mapping[str, np.ndarray],
     energy: np.ndarray | None = None,
-    shear: np.ndarray | None = None,
-    rotation: np.ndarray | None = None,
-    *,
     terms: Sequence[str] = TERMS,
     errors: Mapping[str, np.ndarray] | None = None,
     **attributes: Any,
 ) -> xr.Dataset:
-    """Return the result of a pillar with the common schema of all engines and exact solutions.
+    """Return a result with the common schema of all engines and exact solutions.
 
     Parameters
     ----------
     engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
     time : float array [n], s.
-    stress : float array [len(record.stress), n], Pa, compression positive.
-    velocity, displacement : float array [len(record.velocity), n], m/s and m, along y; of spatial
-        motion [len(record.velocity), n, 3], along x, y, z.
-    energy : float array [len(terms), n], J; work is the energy input of the load, the other terms
-        its stored and dissipated parts.
-    shear : float array [len(record.stress), n, 2], along x, z, the force on the far side over the
-        area, Pa; for spatial motion only.
-    rotation : float array [len(record.velocity), n, 3], about x, y, z, rad; likewise.
-    terms : names of the rows of `energy`, from ALL_TERMS.
+    quantities : by name, those that the solver knows, float arrays in SI, stress and traction
+        compression positive. Of a pillar stress [sections, n]; velocity, displacement [points, n],
+        along y. Of its motion in space velocity, displacement, rotation [points, n, 3], along or
+        about x, y, z; shear [sections, n, 2], along x, z, the force on the far side over the area.
+        Of a rock mass in d dimensions velocity, displacement [points, n, d]; stress [points, n, 3
+        or 6], the mean over the block or that of the element; traction [joints, n, d], compression
+        and shear along the joint; gap [joints, n]; slip [joints, n], in space [joints, n, 2].
+        Displacement, gap and slip are relative to the state at the start of the run.
+    energy : float array [len(terms), n], J, in the plane per metre of thickness; work is the energy
+        input of loads and waves, the other terms its stored and dissipated parts.
+    terms : names of the rows of `energy`, from TERMS.
     errors : for a computed solution, an upper bound on the root-mean-square error over time
-        of each waveform, by its quantity (a key of DIMENSIONS) and in its unit: float arrays of
-        that quantity's shape without time. A closed form has none.
+        of each waveform, by its quantity and in its unit: float arrays of that quantity's shape
+        without time. A closed form has none.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
+
+    Joint receivers are identified by their places in [record]. Traction acts on the side that the
+    joint's normal points into, whose motion relative to the other side is gap and slip. The tangent
+    is the normal rotated to the left. In space the normal points up (of a vertical joint to the
+    north, or else east), and the tangents are the strike, horizontal, and the line of dip, upwards,
+    in a right-handed frame with it.
     """
-    record, spatial = scene.record, velocity.ndim == 3
-    quantities = {
-        "stress": stress,
-        "velocity": _with_axis(velocity),
-        "displacement": None if displacement is None else _with_axis(displacement),
-        "shear": shear,
-        "rotation": rotation,
-        "energy": energy,
-    }
-    places = {"stress_y": record.stress, "velocity_y": record.velocity}
-    coords = {name: ((name,), np.array(at, float)) for name, at in places.items()}
-    components = {"axis": "xyz" if spatial else "y", "across": "xz", "term": terms}
-    return assemble(
-        {"time": (("time",), time), **coords},
-        quantities,
-        DIMENSIONS,
-        components,
-        errors or {},
-        attributes_of(scene, engine, attributes),
-    )
-
-
-def assemble(
-    coords: Mapping[str, tuple[tuple[str, ...], np.ndarray]],
-    quantities: Mapping[str, np.ndarray | None],
-    dimensions: Mapping[str, tuple[str, ...]],
-    components: Mapping[str, Sequence[str]],
-    errors: Mapping[str, np.ndarray],
-    attributes: Mapping[str, Any],
-) -> xr.Dataset:
-    """Return a result of the quantities that are known, with the bounds of their errors.
-
-    coords : times and receivers. dimensions : of each quantity except time, its receivers or terms
-    first. components : names along the other dimensions.
-    """
-    variables, named = {}, dict(coords)
+    coords, variables = _receivers(scene) | {"time": (("time",), time)}, {}
     for name, values in quantities.items():
-        if values is not None:
-            receivers, *others = dimensions[name]
-            variables[name] = ((receivers, "time", *others), values)
-            for one in set(components) & set(dimensions[name]):
-                named[one] = ((one,), np.array(list(components[one])))
-    for name, bound in errors.items():
-        found = np.asarray(bound, dtype=float)
-        found = found[:, None] if found.ndim < len(dimensions[name]) else found  # one axis
-        variables[f"{name}_error"] = (dimensions[name], found)
-    return xr.Dataset(labelled(variables), labelled(named), attributes)
+        dims, found = _variable(scene, name, ("time",), values)
+        variables[name] = dims, found
+        for one in dims[2:]:
+            coords[one] = (one,), np.array([*NAMES[one][found.shape[2]]])
+    for name, bound in (errors or {}).items():
+        variables[f"{name}_error"] = _variable(scene, name, (), np.asarray(bound, dtype=float))
+    if energy is not None:
+        variables["energy"] = ("term", "time"), energy
+        coords["term"] = ("term",), np.array(terms)
+    about = attributes_of(scene, engine, attributes)
+    result = xr.Dataset(labelled(variables), labelled(coords), about)
+    if energy is not None and not (scene.is_column or scene.in_space):
+        result["energy"].attrs["units"] = "J/m"  # of thickness
+    return result
+
+
+def _receivers(scene: AnyScene) -> Coordinates:
+    """Return the coordinates of the receivers."""
+    record: Any = scene.record
+    if scene.is_column:
+        lines = {"stress_y": record.stress, "velocity_y": record.velocity}
+        return {name: ((name,), np.array(y, dtype=float)) for name, y in lines.items()}
+    found: Coordinates = {}
+    for name, places in {"point": record.points, "joint_point": record.joints}.items():
+        at = np.array(places, dtype=float).reshape(-1, scene.domain.dimension)
+        found[name] = (name,), np.arange(len(at), dtype=np.int32)
+        found |= {f"{name}_{axis}": ((name,), x) for axis, x in zip(AXES, at.T, strict=False)}
+    return found
+
+
+def _variable(
+    scene: AnyScene, name: str, time: tuple[str, ...], values: np.ndarray
+) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return a quantity and its dimensions: receivers, time, and components where it has several;
+    motion along one axis has this one."""
+    if scene.is_column:
+        receivers = "stress_y" if name in OF_SECTIONS else "velocity_y"
+    else:
+        receivers = "joint_point" if name in OF_JOINTS else "point"
+    dims = (receivers, *time, COMPONENTS.get(name, ""))
+    if dims[-1] == "axis" and values.ndim < len(dims):
+        values = values[..., None]
+    return dims[: values.ndim], values
 
 
 def labelled(variables: Mapping[str, tuple]) -> dict[str, tuple]:
@@ -184,10 +192,10 @@ def static_attributes(scene: AnyScene) -> dict[str, Any]:
 
 def energy_residual(result: xr.Dataset) -> float:
     """Return the largest imbalance of a result's energy ledger over the largest work."""
-    return imbalance(result["energy"].values, [str(term) for term in result["term"].values])
+    return imbalance(result["energy"].values, result["term"].values.tolist())
 
 
-def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
+def imbalance(energy: np.ndarray, terms: Sequence[str]) -> float:
     """Return the largest imbalance of an energy ledger [len(terms), n] over the largest work.
 
     Both are relative to the first sample, which includes the energy of a static state. Without
@@ -195,22 +203,26 @@ def imbalance(energy: np.ndarray, terms: Sequence[str] = TERMS) -> float:
     static state's energy is the denominator: round-off of the sums, tens of epsilon of that energy,
     reaches the work under a prestress of millions of times the load.
     """
+    left, work, largest, least = _ledger(energy, terms)
+    scale = max(work or largest, least)
+    return left / scale if scale > 0 else 0.0
+
+
+def _ledger(energy: np.ndarray, terms: Sequence[str]) -> tuple[float, float, float, float]:
+    """Return the largest imbalance, work and term since the first sample, and the least energy, J,
+    that these resolve."""
     since = energy - energy[:, :1]
     work = since[list(terms).index("work")]
-    balance = since.sum(axis=0) - 2 * work
-    scale = float(np.abs(work if work.any() else since).max())
-    scale = max(scale, AT_REST * float(np.abs(energy[:, 0]).max()))
-    return float(np.abs(balance).max()) / scale if scale > 0 else 0.0
+    parts = since.sum(axis=0) - 2 * work, work, since, AT_REST * energy[:, 0]
+    left, most, largest, least = (float(np.abs(x).max()) for x in parts)
+    return left, most, largest, least
 
 
 def open_ledger(result: xr.Dataset) -> str:
     """Return a warning of an energy ledger that is open by more than `MOST_OPEN` of its largest
     term; "" where it closes."""
-    energy = result["energy"].values
-    since = energy - energy[:, :1]
-    work = since[result["term"].values.tolist().index("work")]
-    left = float(np.abs(since.sum(axis=0) - 2 * work).max())
-    scale = max(float(np.abs(since).max()), AT_REST * float(np.abs(energy[:, 0]).max()))
+    left, _, largest, least = _ledger(result["energy"].values, result["term"].values.tolist())
+    scale = max(largest, least)
     if not left > MOST_OPEN * scale:
         return ""
     damps = result.attrs.get("scheme") == "implicit"
@@ -219,8 +231,3 @@ def open_ledger(result: xr.Dataset) -> str:
         f"{result.attrs['engine']}: the energy ledger is open by {left / scale:.2g} of its largest "
         f"term, {scale:.3g} J: {why}"
     )
-
-
-def _with_axis(values: np.ndarray) -> np.ndarray:
-    """Return values [point, time, axis] of axial [point, time] or spatial motion."""
-    return values if values.ndim == 3 else values[..., None]

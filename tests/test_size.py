@@ -20,9 +20,9 @@ from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.size import LIMIT, memory
 from jointwave.compare.engines import solve
 from jointwave.compare.misfit.external_netcdf import read_netcdf
-from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS
 from jointwave.compare.report import peers
 from jointwave.compare.runs.output import read_rows
+from jointwave.results import dataset
 from jointwave.results.labels import QUANTITIES, RECEIVERS
 from jointwave.results.netcdf import load_netcdf
 
@@ -221,7 +221,7 @@ def lines(path, text):
 
 
 #: Files that are small on the disk or to look at, and what a command does with them.
-NAMES = ["time", *QUANTITIES, *RECEIVERS, *COMPONENT_DIMENSIONS]
+NAMES = ["time", *QUANTITIES, *RECEIVERS, *dataset.NAMES]
 BIG = 2**31 + 4096
 BOMBS = {
     "curves as NetCDF": lambda p: read_netcdf(classic(p / "a.nc", 2**28, ["time"], BIG), 3),

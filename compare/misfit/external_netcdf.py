@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from jointwave.cases.records import Column, Columns, require_series
-from jointwave.compare.misfit.places import COMPONENT_DIMENSIONS, waveforms
+from jointwave.compare.misfit.places import waveforms
+from jointwave.results.dataset import NAMES
 from jointwave.results.labels import QUANTITIES, RECEIVERS
 from jointwave.results.netcdf import load_netcdf
 
@@ -22,7 +23,7 @@ def read_netcdf(path: Path, least: int) -> Columns:
     """Return the waveforms of a result, or of one receiver that was selected from it, each at least
     so many samples long; raises ValueError, in one phrase, where a file holds none."""
     places = [name for names in RECEIVERS.values() for name in names]
-    wanted = {"time", *QUANTITIES, *RECEIVERS, *places, *COMPONENT_DIMENSIONS}
+    wanted = {"time", *QUANTITIES, *RECEIVERS, *places, *NAMES}
     try:
         # Undecoded, times keep the numbers and the unit of the file.
         found = load_netcdf(path, wanted, decode_times=False)

@@ -12,12 +12,9 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
+from jointwave.results.dataset import NAMES, OF_JOINTS, OF_SECTIONS
 from jointwave.results.labels import AXES, QUANTITIES, RECEIVERS
-from jointwave.results.rock_mass import JOINT_AXES
 from jointwave.results.stress import stress_components
-
-#: Dimensions of components in results.
-COMPONENT_DIMENSIONS = ("axis", "across", "stress_component", "joint_axis", "slip_axis")
 
 #: By the number of coordinates of a receiver: the components of each quantity in labels, "" if
 #: it has only one, and the key of [record] with its receivers.
@@ -25,23 +22,19 @@ COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
     1: {
         "stress": ("",),
         "shear": ("x", "z"),
-        "velocity": ("x", "y", "z"),
-        "displacement": ("x", "y", "z"),
-        "rotation": ("x", "y", "z"),
+        **dict.fromkeys(("velocity", "displacement", "rotation"), AXES),
     },
     **{
         dim: {
             "stress": tuple(stress_components(dim)),
-            "velocity": AXES[:dim],
-            "displacement": AXES[:dim],
-            "traction": axes,
+            **dict.fromkeys(("velocity", "displacement"), AXES[:dim]),
+            "traction": tuple(axes),
             "gap": ("",),
-            "slip": axes[1:] if dim == 3 else ("",),
+            "slip": tuple(axes[1:]) if dim == 3 else ("",),
         }
-        for dim, axes in JOINT_AXES.items()
+        for dim, axes in NAMES["joint_axis"].items()
     },
 }
-OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
 
 _NUMBER = r"[0-9.eE+-]+"
 _NEXT = rf"\s*[,\s]\s*({_NUMBER})"
@@ -157,7 +150,7 @@ def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]
     found = result[quantity]
     (receivers,) = (name for name in RECEIVERS if name in found.dims)
     columns = [result[name].values.tolist() for name in RECEIVERS[receivers] if name in result]
-    dims = [name for name in COMPONENT_DIMENSIONS if name in found.dims]
+    dims = [name for name in NAMES if name in found.dims]
     components = [str(one) for one in found[dims[0]].values] if dims else [""]
     return list(zip(*columns, strict=True)), components
 

@@ -10,8 +10,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.receivers.sections import extent_of
 from jointwave.continuum.stepping.arrays import Samples
 from jointwave.continuum.stepping.problem import Problem
-from jointwave.results.dataset import dataset
-from jointwave.results.rock_mass import TERMS, rock_mass_dataset
+from jointwave.results.dataset import TERMS, dataset
 
 
 def recorded(
@@ -28,12 +27,11 @@ def recorded(
     )
     terms, energy = ledger(scene, problem, samples)
     if not scene.is_column:
-        found = of_rock_mass(problem.body.components, samples)
-        return rock_mass_dataset(scene, name, times, found, energy, terms, **about)
-    if energy is not None:
-        energy = extent_of(scene, problem.body) * energy
-    waves = of_pillar(problem, samples)
-    return dataset(scene, name, times, **waves, energy=energy, terms=terms, **about)
+        waves = of_rock_mass(problem.body.components, samples)
+    else:
+        waves = of_pillar(problem, samples)
+        energy = None if energy is None else extent_of(scene, problem.body) * energy
+    return dataset(scene, name, times, waves, energy, terms, **about)
 
 
 def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
@@ -82,7 +80,7 @@ def ledger(
 
 
 def of_rock_mass(dim: int, samples: Samples) -> dict[str, np.ndarray]:
-    """Return what was recorded of a rock mass by name, as `rock_mass_dataset` takes it.
+    """Return what was recorded of a rock mass by name, as `dataset` takes it.
 
     Motion counts from the state at the start. Without joints nothing is known of them.
     """

@@ -9,7 +9,7 @@ from jointwave.continuum.stepping.problem import Readings
 from jointwave.continuum.stepping.product import Table
 from jointwave.continuum.stepping.tractions import Points
 from jointwave.joints.law import LawFlags
-from jointwave.results.rock_mass import TERMS
+from jointwave.results.dataset import TERMS
 
 #: Rows of the sums of a ledger, J: what was dissipated and what went in.
 VISCOUS, FRICTION, BOUNDARY, WORK = range(4)
@@ -124,7 +124,7 @@ class Work(NamedTuple):
 
 class Samples(NamedTuple):
     """What is recorded: velocity, displacement, stress, traction, jump [rows, samples]; energy
-    [terms, samples], in the order of `results.rock_mass.TERMS`, no samples where it is not."""
+    [terms, samples], in the order of `results.dataset.TERMS`, no samples where it is not."""
 
     velocity: np.ndarray
     displacement: np.ndarray

@@ -12,7 +12,7 @@ import numpy as np
 from jointwave.dem.contacts.chunks import LANES, Chunks
 from jointwave.joints.law import Law, LawFlags
 from jointwave.numerics.cache_lines import zeros
-from jointwave.results.rock_mass import TERMS
+from jointwave.results.dataset import TERMS
 
 
 def rows(**sizes: int) -> Any:

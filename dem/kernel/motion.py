@@ -11,7 +11,7 @@ from jointwave.joints.formula import formula
 
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
 CHUNK, BLOCK, HELD, PLACE, SEEN = range(5)
-#: Rows of the ledger of one step, J in lanes, in the order of `results.rock_mass.TERMS`, and AFTER
+#: Rows of the ledger of one step, J in lanes, in the order of `results.dataset.TERMS`, and AFTER
 #: further on what is added behind the step.
 KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
 AFTER = 8 * L

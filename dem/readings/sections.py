@@ -17,9 +17,8 @@ from jointwave.dem.contacts.chunks import LANES
 from jointwave.dem.kernel.model import Samples, State
 from jointwave.dem.readings.samples import acting, rotation_vectors
 from jointwave.dem.system import BlockSystem
-from jointwave.results.dataset import dataset
+from jointwave.results.dataset import TERMS, dataset
 from jointwave.results.labels import label
-from jointwave.results.rock_mass import TERMS
 
 
 class Sections(NamedTuple):
@@ -55,7 +54,7 @@ class Sections(NamedTuple):
             scene,
             "dem",
             time.times[:count],
-            **with_walls(waveforms(self, system, samples), scene, time.times[:count]),
+            with_walls(waveforms(self, system, samples), scene, time.times[:count]),
             **ledger_of(system, samples),
             scheme=scene.numerics.dem.scheme,
             force_evaluations=max(1, system.model.form.stages - 1) * time.steps,

@@ -25,7 +25,7 @@ from jointwave.dem.kernel.model import Samples, State
 from jointwave.dem.readings.receivers import Receivers, everywhere
 from jointwave.dem.readings.samples import acting
 from jointwave.dem.system import BlockSystem
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 from jointwave.results.stress import stress_components
 
 
@@ -49,7 +49,7 @@ class PointsAndJoints(Receivers):
     ) -> xr.Dataset:
         """Return the result of the first samples of a run."""
         outside, contact = moments(self, system, samples), samples.contact
-        return rock_mass_dataset(
+        return dataset(
             system.blocks.scene,
             "dem",
             system.time.times[: contact.shape[-1]],

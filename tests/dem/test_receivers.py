@@ -28,7 +28,7 @@ from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, triangle
 from jointwave.dem.readings.waveforms import at_points, mean_stress, quantities
 from jointwave.dem.run import simulate
 from jointwave.dem.sides.boundaries import freedoms as freedoms_of
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 from jointwave.results.snapshots import snapshots_of
 from jointwave.results.stress import stress_components
 
@@ -307,7 +307,7 @@ def test_snapshots_of_a_scene_in_space(tmp_path):
     times = np.arange(2 * recorder.every + 1) * scene.interval
     for k in range(len(times)):
         recorder.record_if_due(k)
-    s = snapshots_of(recorder.add_to(rock_mass_dataset(scene, "dem", times, {})))
+    s = snapshots_of(recorder.add_to(dataset(scene, "dem", times, {})))
     assert s.kind == "triangle" and len(s.time) == 3 and s.stress.shape[2] == 6
     assert len(np.unique(s.block)) == count and not s.displacement[0].any()
     arm = bodies.corners - found.centroid[bodies.owner]

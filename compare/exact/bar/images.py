@@ -55,8 +55,10 @@ def solve(scene: Scene) -> xr.Dataset:
     p, record, times, ends = calibrate(scene), scene.record, sample_times(scene), scene.ends
     reflects = REFLECTION[ends.start], REFLECTION[ends.end]
     bar = Front(scene.pillar.length, p.bar_speed, p.impedance, *reflects)
-    stress, *moved = bar.waves(entering(scene), times, record.stress, record.velocity)
-    return dataset(scene, SOLVER.name, times, stress + static_stress(scene), *moved)
+    found = bar.waves(entering(scene), times, record.stress, record.velocity)
+    waves = dict(zip(("stress", "velocity", "displacement"), found, strict=True))
+    waves["stress"] = waves["stress"] + static_stress(scene)
+    return dataset(scene, SOLVER.name, times, waves)
 
 
 class Front(NamedTuple):

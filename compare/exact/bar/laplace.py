@@ -51,8 +51,9 @@ def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
     places = record.stress, record.velocity
     found, bounds = bounded(bar, load_history(scene), times, *places, scene.load.time_scale)
     found[0] = found[0] + static_stress(scene)
-    errors = dict(zip(("stress", "velocity", "displacement"), bounds, strict=True))
-    return dataset(scene, name, times, *found, errors=errors)
+    names = "stress", "velocity", "displacement"
+    waves, errors = (dict(zip(names, of, strict=True)) for of in (found, bounds))
+    return dataset(scene, name, times, waves, errors=errors)
 
 
 def bounded(

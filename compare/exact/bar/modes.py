@@ -80,7 +80,7 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
         exact = closed[name].values.reshape(waves.shape)
         off = np.sqrt(np.mean((waves - exact) ** 2, axis=1))
         errors[name] = off + ROUND_OFF[0] * np.abs(exact).max(axis=1, initial=0.0)
-    return dataset(scene, SERIES.name, sample_times(scene), **found, errors=errors)
+    return dataset(scene, SERIES.name, sample_times(scene), found, errors=errors)
 
 
 def solve_damped(scene: Scene, n_terms: int = 500) -> xr.Dataset:
@@ -94,7 +94,7 @@ def solve_damped(scene: Scene, n_terms: int = 500) -> xr.Dataset:
         peak = np.abs(waves).max(axis=1, initial=0.0)
         errors[name] = SAFETY * np.sqrt(np.mean(last**2, axis=1)) + ROUND_OFF[1] * peak
     found["stress"] += static_stress(scene)
-    return dataset(scene, DAMPED_BAR.name, sample_times(scene), **found, errors=errors)
+    return dataset(scene, DAMPED_BAR.name, sample_times(scene), found, errors=errors)
 
 
 def _summed(scene: Scene, n_terms: int) -> list[Waves]:

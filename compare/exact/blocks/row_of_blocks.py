@@ -104,8 +104,7 @@ def solve(scene: Scene) -> xr.Dataset:
     found, twin = (receivers(scene, one, x) for x in states)
     errors = {key: bound(x[..., :known], twin[key][..., :known]) for key, x in found.items()}
     waves = {key: x if x.ndim == 2 else x.swapaxes(1, 2) for key, x in found.items()}
-    about |= with_walls(waves, scene, times)
-    return dataset(scene, name, times, errors=errors, **about)
+    return dataset(scene, name, times, with_walls(waves, scene, times), errors=errors, **about)
 
 
 def _known(one: BlockSystem, states: np.ndarray, other: np.ndarray) -> int:

@@ -74,8 +74,9 @@ def solve(scene: Scene) -> xr.Dataset:
     stress, shear = (np.outer(sections @ weight, still) for weight in weights)
     falls = (total - held) * np.outer(points[:, 0], [down[0], 0.0, down[1]])[:, None]
     velocity, displacement = (falls * t[:, None] for t in (times, times**2 / 2))
-    found = {"shear": shear[..., None] * down, "velocity": velocity, "displacement": displacement}
-    return dataset(scene, SOLVER.name, times, stress, **found, rotation=np.zeros_like(velocity))
+    waves = {"stress": stress, "shear": shear[..., None] * down, "velocity": velocity}
+    waves |= {"displacement": displacement, "rotation": np.zeros_like(velocity)}
+    return dataset(scene, SOLVER.name, times, waves)
 
 
 def _gravity(scene: Scene) -> tuple[np.ndarray, float]:

@@ -88,8 +88,9 @@ def behind_and_before(
         )
         stress = stress[0] + stress_back[0] + static_stress(scene)
         found.append([stress, *((motion - motion_back) / p.impedance)])
-    bounds = zip(("stress", "velocity", "displacement"), map(bound, *found), strict=True)
-    return dataset(scene, name, times, *found[0], errors=dict(bounds))
+    names = "stress", "velocity", "displacement"
+    waves, bounds = (dict(zip(names, of, strict=True)) for of in (found[0], map(bound, *found)))
+    return dataset(scene, name, times, waves, errors=bounds)
 
 
 def around(

@@ -88,9 +88,9 @@ def solve(scene: Scene) -> xr.Dataset:
     }
     stress = np.full((len(scene.record.stress), len(times)), static_stress(scene))
     stress = stress + found.pop("stress", 0.0)
-    found |= {name: x.swapaxes(1, 2) for name, x in found.items()}
-    rotation = np.zeros_like(found["velocity"])
-    return dataset(scene, SOLVER.name, times, stress, **found, rotation=rotation, errors=errors)
+    waves = {name: x.swapaxes(1, 2) for name, x in found.items()}
+    waves |= {"stress": stress, "rotation": np.zeros_like(waves["velocity"])}
+    return dataset(scene, SOLVER.name, times, waves, errors=errors)
 
 
 def _waveforms(scene: Scene, which: int) -> dict[str, Any]:

@@ -34,7 +34,7 @@ from jointwave.compare.exact.linear import bound
 from jointwave.compare.exact.rock_mass.conditions import beyond
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = {2: 1000, 3: 500}  #: by the number of dimensions
 FREEDOMS = {2: 3, 3: 6}  #: of a block, by the number of dimensions
@@ -85,7 +85,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     names = ("displacement", "velocity")
     values = {name: x.swapaxes(1, 2) for name, x in zip(names, found[0], strict=True)}
     errors = {name: bound(*pair) for name, *pair in zip(names, *found, strict=True)}
-    return rock_mass_dataset(scene, SOLVER.name, times, values, errors=errors)
+    return dataset(scene, SOLVER.name, times, values, errors=errors)
 
 
 def masses(scene: RockMass, blocks: Blocks) -> tuple[np.ndarray, csr_array]:

@@ -37,7 +37,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
     reflecting_side,
 )
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 
 ALIKE = 1e-9  # two speeds, relative
 
@@ -160,7 +160,7 @@ def solve(scene: RockMass) -> xr.Dataset:
         "displacement": moved.swapaxes(1, 2),
         "stress": prestress_of(scene) - stress.swapaxes(1, 2),
     }
-    return rock_mass_dataset(scene, SOLVER.name, times, values)
+    return dataset(scene, SOLVER.name, times, values)
 
 
 SOLVER = Solver(

@@ -21,7 +21,7 @@ from jointwave.compare.exact.plane.point_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass.conditions import beyond, prestress_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 
 #: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
 PARTS = 8
@@ -71,7 +71,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     known = known_until(scene)
     until: dict[str, Any] = {"known_until": known} if known < times[-1] else {}
     name = (POINT if scene.in_space else LINE).name
-    return rock_mass_dataset(scene, name, times, values, errors=errors, **until)
+    return dataset(scene, name, times, values, errors=errors, **until)
 
 
 def known_until(scene: RockMass) -> float:

@@ -34,7 +34,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
 )
 from jointwave.compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 
 #: Causes of the engines' misfits against these waves.
 DISTANCES = {
@@ -101,7 +101,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
     errors |= {"traction": pulled, "gap": slipped[:, 0], "slip": slipped[:, 1:]}
     if not scene.in_space:  # one slip
         values["slip"], errors["slip"] = values["slip"][..., 0], errors["slip"][:, 0]
-    return rock_mass_dataset(scene, name, times, values, errors=errors)
+    return dataset(scene, name, times, values, errors=errors)
 
 
 def motion_at(

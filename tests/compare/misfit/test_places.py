@@ -9,7 +9,7 @@ from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.misfit.metrics import pairings, rms, worst
 from jointwave.compare.misfit.pairs import measure
 from jointwave.compare.misfit.places import Place, parsed, places_of
-from jointwave.results.rock_mass import rock_mass_dataset
+from jointwave.results.dataset import dataset
 
 JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 TABLES = {
@@ -32,9 +32,7 @@ def scene(**changes):
 def result(mass, scale=1.0, still=0.0):
     values = {"velocity": scale * LOUD, "traction": still + scale * LOUD[:1]}
     errors = {"velocity": np.array([[1e-3, 2e-3], [3e-3, 4e-3]])}
-    return rock_mass_dataset(
-        mass, "dem", TIME, values | {"slip": scale * WAVE[None]}, errors=errors
-    )
+    return dataset(mass, "dem", TIME, values | {"slip": scale * WAVE[None]}, errors=errors)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +103,7 @@ def test_in_a_pillar_a_silent_stress_decides_nothing_beside_shear(pillar):
 def test_quantities_of_one_unit_are_judged_together():
     """A slip of a thousandth of the displacement is ignored; without displacement it counts."""
     one, other = (
-        rock_mass_dataset(scene(), "dem", TIME, {"displacement": LOUD, "slip": slip * WAVE[None]})
+        dataset(scene(), "dem", TIME, {"displacement": LOUD, "slip": slip * WAVE[None]})
         for slip in (2e-3, 1e-3)
     )
     faint = {p.place.quantity: p.faint for p in pairings(one, other)}
