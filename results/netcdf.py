@@ -8,8 +8,17 @@ import xarray as xr
 
 from jointwave.cases.size import memory, require, within
 
+MAGIC = (b"CDF", b"\x89HDF")  # what NetCDF 3 and 4 begin with
 COPIES = 3  # of a variable: as it is stored, decoded, and in double precision
 LIBRARIES = 300_000_000  # bytes of address space for the reading libraries
+
+
+def is_netcdf(path: Path) -> bool:
+    """Return whether a file begins as NetCDF does."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.read(4).startswith(MAGIC)
 
 
 def load_netcdf(path: Path, wanted: Collection[str] | None = None, **decoding: Any) -> xr.Dataset:

@@ -19,7 +19,7 @@ from jointwave.cases.records import read_columns, read_history
 from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.size import LIMIT, memory
 from jointwave.compare.engines import solve
-from jointwave.compare.misfit.external_netcdf import read_netcdf
+from jointwave.compare.misfit.columns import read_netcdf
 from jointwave.compare.report import peers
 from jointwave.compare.runs.output import read_rows
 from jointwave.results import dataset

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from jointwave.cases.records import Column
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import save
 from jointwave.compare.figures.receivers import curve_table
@@ -106,12 +105,12 @@ def _velocities(comparison: Comparison) -> Iterator[tuple[str, xr.Dataset]]:
         if "velocity" in result and result["velocity"].size:
             yield name, result
     for curves in (beside.curves for beside in comparison.besides):
-        there: dict[tuple[float, ...], list[Column]] = {}
+        there: dict[tuple[float, ...], dict[Place, np.ndarray]] = {}
         for place, values in curves.waveforms.items():
             if place.quantity == "velocity":
-                there.setdefault(place.at, []).append(Column(str(place), "", values))
-        for columns in there.values():
-            yield curves.name, dataset_of(curves.time, columns, "velocity")
+                there.setdefault(place.at, {})[place] = values
+        for waves in there.values():
+            yield curves.name, dataset_of(curves.time, waves)
 
 
 def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:

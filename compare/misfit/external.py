@@ -13,20 +13,19 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.records import Column, Columns, read_columns
+from jointwave.cases.records import Column, Columns
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.units import TIME, UNITS, split_unit
 from jointwave.cases.warnings.sources import look_like_milliseconds
 from jointwave.compare.engines import names
-from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
-from jointwave.compare.misfit.places import LABEL, Place, parsed, recorded, same
+from jointwave.compare.misfit.columns import Selection, read_table, selected, selection
+from jointwave.compare.misfit.places import Place, parsed, recorded, same
 from jointwave.compare.scenes import AnySource, load
-from jointwave.results.labels import QUANTITIES
 
 READ_CURVES = "curves of `read_curves`"  # what functions accept
 LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
@@ -52,42 +51,6 @@ class Curves:
     waveforms: dict[Place, np.ndarray]
     timed: bool = True
     bare: frozenset[Place] = frozenset()
-
-
-class Selection(NamedTuple):
-    """One argument of `--with`: column and label are empty if not given."""
-
-    text: str
-    path: Path
-    column: str = ""
-    label: str = ""
-
-    @property
-    def is_time(self) -> bool:
-        """Whether it selects the column of times."""
-        return split_unit(self.label)[0].lower() == "time"
-
-    def fits(self, column: Column) -> bool:
-        """Return whether a column is the one selected, or none is."""
-        headers = ("", column.name, f"{column.name} [{column.unit}]")
-        return self.column in headers or split_unit(self.column) == (column.name, column.unit)
-
-
-def selection(text: str) -> Selection:
-    """Return a parsed argument, FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL."""
-    ends = [len(text), *(i for i, letter in enumerate(text) if letter == ":")]
-    end = next((i for i in ends if Path(text[:i]).is_file()), len(text))
-    path, which = Path(text[:end]), text[end + 1 :].strip()
-    if _is_label(which):
-        return Selection(text, path, "", which)
-    column, equals, label = which.rpartition("=")
-    if not equals or not (_is_label(label) or split_unit(label)[0].lower() == "time"):
-        column, label = which, ""
-    return Selection(text, path, column.strip().strip("\"'"), label.strip())
-
-
-def _is_label(text: str) -> bool:
-    return LABEL.fullmatch(split_unit(text)[0].removeprefix("-").lstrip()) is not None
 
 
 def read_curves(
@@ -159,18 +122,16 @@ def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
 
 def _of_file(name: str, every: list[Selection]) -> list[Curves]:
     """Return the curves of a file; raises SceneError, or ValueError in one phrase."""
-    path, times = every[0].path, [one for one in every if one.is_time]
+    path, no_times = every[0].path, Selection("", every[0].path)
+    times = next((one for one in every if one.is_time), no_times)
     wanted = [one for one in every if not one.is_time] or [Selection(str(path), path)]
-    if is_netcdf(path):
-        table = read_netcdf(path, LEAST_SAMPLES)
-    else:
-        table = read_columns(path, times[0].column if times else "time", LEAST_SAMPLES)
-    unit = (split_unit(times[0].label)[1] if times else "") or table.time.unit
-    seconds = table.time._replace(unit=unit).si(TIME)
+    table = read_table(times, LEAST_SAMPLES)
+    seconds, timed = table.time.si(TIME), bool(table.time.unit)
     groups: dict[bytes, dict[Place, np.ndarray]] = {}  # by the cells that are empty
-    selected = [one for choice in wanted for one in _selected(table, choice)]
-    bare = frozenset(place for place, _, said in selected if not said)
-    for place, values, _ in selected:
+    found = [one for choice in wanted for one in _selected(table, choice)]
+    bare = frozenset(place for place, column in found if not column.unit)
+    for place, column in found:
+        values = column.si(UNITS[place.quantity])
         group = groups.setdefault(np.isnan(values).tobytes(), {})
         if place in group:
             raise ValueError(f"{place} must be given only once")
@@ -185,40 +146,31 @@ def _of_file(name: str, every: list[Selection]) -> list[Curves]:
             )
         called = f"{name}:{place}" if curves else name
         waveforms = {place: values[there] for place, values in group.items()}
-        curves.append(Curves(called, str(path), seconds[there], waveforms, bool(unit), bare))
+        curves.append(Curves(called, str(path), seconds[there], waveforms, timed, bare))
     return curves
 
 
-def _selected(table: Columns, choice: Selection) -> list[tuple[Place, np.ndarray, str]]:
-    """Return the waveforms of a file selected by one argument, [n] in SI, nan where cells are
-    empty, each with the unit that is given for it, or none."""
-    columns = [column for column in table.rest if choice.fits(column)]
-    alone = len(columns) == 1 and (bool(choice.column) or len(table.rest) == 1)
-    label, unit = split_unit(choice.label)
-    wanted, found = parsed(label.removeprefix("-")), []
-    for column in columns if wanted or not label else []:
-        place, said = parsed(column.name.removeprefix("-")), column.name.lower()
-        if place is None and wanted is None:
+def _selected(table: Columns, choice: Selection) -> list[tuple[Place, Column]]:
+    """Return the columns of a file selected by one argument, nan where cells are empty, with their
+    places; raises SceneError for a column without, or if there is none."""
+    found, file = list[tuple[Place, Column]](), str(choice.path)
+    for place, column in selected(table.rest, choice, parsed):
+        if place is None:
             which = f"{column.name}=" if column.name else ""
             allowed = (
                 f"must be named as {', in a rock mass as '.join(EXAMPLES.values())}, or its place "
-                f"be given as {choice.path}:{which}stress@20; the file holds {_listed(table)}"
+                f"be given as {file}:{which}stress@20; the file holds {_listed(table)}"
             )
-            raise SceneError(str(choice.path), column.name or "second column", None, allowed)
-        bare = alone and said not in QUANTITIES
-        if wanted and not place and (bare or said == wanted.quantity):
-            place = wanted
-        if place and (wanted is None or place.is_at(wanted)):
-            sign = -1.0 if "-" in (column.name[:1], label[:1]) else 1.0
-            stated = column._replace(unit=unit or column.unit)
-            found.append((place, sign * stated.si(UNITS[place.quantity]), stated.unit))
+            raise SceneError(file, column.name or "second column", None, allowed)
+        found.append((place, column))
     if not found:
-        held = f"{choice.path} holds {_listed(table)}"
-        allowed = f"must be a label, such as {EXAMPLES['pillar']}, a column or COLUMN=LABEL; {held}"
+        held, label = f"{file} holds {_listed(table)}", split_unit(choice.label)[0]
+        wanted = parsed(label.removeprefix("-"))
         if wanted and not choice.column:
             allowed = f"{held}; {wanted} must be one of them"
         else:
-            allowed = f"{choice.column or label!r} {allowed}"
+            allowed = f"must be a label, such as {EXAMPLES['pillar']}, a column or COLUMN=LABEL"
+            allowed = f"{choice.column or label!r} {allowed}; {held}"
         raise SceneError("--with", choice.text, None, allowed)
     return found
 

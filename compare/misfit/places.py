@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.units import UNITS
 from jointwave.results.dataset import NAMES, OF_JOINTS, OF_SECTIONS
 from jointwave.results.labels import AXES, QUANTITIES, RECEIVERS
 from jointwave.results.stress import stress_components
@@ -103,22 +104,28 @@ class Place(NamedTuple):
         return next((wave for place, wave in found if self.is_at(place)), None)
 
 
-def parsed(text: str) -> Place | None:
-    """Return the place given by a label; None if it gives none."""
+def labelled(text: str) -> Place | None:
+    """Return the quantity, component and receiver of a label as it spells them; None if it is none,
+    or of no known quantity."""
     match = LABEL.fullmatch(text.strip())
-    if match is None:
+    if match is None or match[1].lower() not in UNITS:
         return None
-    quantity, component, *numbers = match.groups()
     try:
-        at = tuple(float(one) for one in numbers if one is not None)
+        at = tuple(float(one) for one in match.groups()[2:] if one is not None)
     except ValueError:
         return None
-    known = COMPONENTS[len(at)].get(quantity.lower())
-    if known is None:
+    return Place(match[1].lower(), match[2] or "", at)
+
+
+def parsed(text: str) -> Place | None:
+    """Return the place given by a label; None if it gives none of a scene."""
+    place = labelled(text)
+    if place is None:
         return None
-    along = "y" if len(at) == 1 and quantity.lower() in ("velocity", "displacement") else ""
-    given = component or along
-    return Place(quantity.lower(), given, at) if given in known else None
+    if len(place.at) == 1 and place.quantity in ("velocity", "displacement"):
+        place = place._replace(component=place.component or "y")
+    known = COMPONENTS[len(place.at)].get(place.quantity, ())
+    return place if place.component in known else None
 
 
 def waveforms(result: xr.Dataset, suffix: str = "") -> dict[Place, np.ndarray]:

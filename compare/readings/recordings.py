@@ -1,5 +1,6 @@
 """Recordings as results: what files and arrays of recorders hold, as the readings take it."""
 
+from collections.abc import Mapping
 from os import PathLike
 from typing import Any
 
@@ -7,21 +8,21 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.records import Column, read_columns
-from jointwave.cases.units import TIME, UNITS, split_unit
+from jointwave.cases.records import Column
+from jointwave.cases.units import TIME, UNITS
 from jointwave.compare.misfit.alignment import UNEVEN
-from jointwave.compare.misfit.external import Selection, selection
-from jointwave.compare.misfit.external_netcdf import is_netcdf, read_netcdf
-from jointwave.compare.misfit.places import LABEL, Place
+from jointwave.compare.misfit.columns import Selection, read_table, selected, selection
+from jointwave.compare.misfit.places import labelled
 from jointwave.results.labels import RECEIVERS
-from jointwave.results.netcdf import load_netcdf
+from jointwave.results.netcdf import is_netcdf, load_netcdf
 
 #: A result; a file; an array over `time`; or times (s) with values in SI [n] or [receiver, n], and
 #: the receivers' distances along a line (m) where these are known.
 Recording = xr.Dataset | xr.DataArray | str | PathLike[str] | tuple[Any, ...]
 #: What a recorder measures, by its unit.
 MEASURED = ("velocity", "acceleration", "displacement", "stress")
-Where = str | tuple[float, ...]  #: the name of a receiver, or its place where it is known
+#: As `Place`: a quantity, its direction, and its receiver's place or, where not known, its name.
+Where = tuple[str, str, tuple[float, ...] | str]
 MOST_SAMPLES = 4_000_000  # of an unevenly sampled recording at its smallest interval
 
 
@@ -50,8 +51,8 @@ def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
     if rows.ndim != 2 or rows.shape[1] != len(time) or (at and len(at[0]) != len(rows)):
         allowed = f"must be [n] or [receiver, n] for {len(time)} times, and one place a receiver"
         raise SceneError("recording", "values", f"{rows.shape}", allowed)
-    places: list[Where] = [(y,) for y in at[0]] if at else [str(i) for i in range(len(rows))]
-    return _dataset(time, {(quantity, at, ""): row for at, row in zip(places, rows, strict=True)})
+    places = [(y,) for y in at[0]] if at else map(str, range(len(rows)))
+    return dataset_of(time, {(quantity, "", y): row for y, row in zip(places, rows, strict=True)})
 
 
 def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
@@ -67,71 +68,38 @@ def _of_array(array: xr.DataArray, quantity: str) -> xr.Dataset:
 
 def _of_file(text: str, quantity: str) -> xr.Dataset:
     choice = selection(text)
-    path, at = choice.path, choice.column if choice.is_time else "time"
+    every = Selection(text, choice.path)
     try:
-        if is_netcdf(path) and not (choice.column or choice.label):
-            return load_netcdf(path)
-        table = read_netcdf(path, 2) if is_netcdf(path) else read_columns(path, at, gaps=False)
-        time, columns = table
-        if choice.is_time:
-            time = time._replace(unit=split_unit(choice.label)[1] or time.unit)
-        else:
-            columns = _selected(columns, choice)
-        return dataset_of(time.si(TIME), columns, quantity)
+        if is_netcdf(choice.path) and not (choice.column or choice.label):
+            return load_netcdf(choice.path)
+        time, columns = read_table(choice, 2, gaps=False)
+        found = selected(columns, every if choice.is_time else choice, labelled)
+        if not found:
+            raise ValueError(f"has no column {choice.column or choice.label!r}")
+        waves: dict[Where, np.ndarray] = {}
+        for place, column in found:
+            at: Where = place or (_measured(column, quantity), "", column.name.removeprefix("-"))
+            waves[at] = column.si(UNITS[at[0]])
+        if len(waves) < len(found):
+            raise ValueError("must name each column once")
+        return dataset_of(time.si(TIME), waves)
     except (OSError, ValueError, MemoryError) as error:
         if isinstance(error, SceneError):
             raise
         raise SceneError(str(choice.path), "", None, str(error)) from None
 
 
-def _selected(every: list[Column], choice: Selection) -> list[Column]:
-    """Return the columns that a selection names, with its label, sign and unit; raises
-    ValueError."""
-    columns, (label, unit) = [one for one in every if choice.fits(one)], split_unit(choice.label)
-    wanted, found = _place(label), []
-    for one in columns:
-        place = _place(one.name)
-        if wanted is None or (wanted.is_at(place) if place else len(columns) == 1):
-            name = one.name if place or not label else label
-            sign = "-" * ("-" in (one.name[:1], label[:1]))
-            found.append(Column(sign + name.removeprefix("-"), unit or one.unit, one.values))
-    if not found:
-        raise ValueError(f"has no column {choice.column or choice.label!r}")
-    return found
+def _measured(column: Column, quantity: str) -> str:
+    """Return what a column without a place holds, by its unit; else `quantity`."""
+    if not column.unit or column.unit in UNITS[quantity]:
+        return quantity
+    return next((one for one in MEASURED if column.unit in UNITS[one]), quantity)
 
 
-def _place(name: str) -> Place | None:
-    """Return quantity, component and receiver of a column's name or a label."""
-    match = LABEL.fullmatch(name.removeprefix("-"))
-    if match is None or match[1].lower() not in UNITS:
-        return None
-    at = tuple(float(one) for one in match.groups()[2:] if one is not None)
-    return Place(match[1].lower(), match[2] or "", at)
-
-
-def dataset_of(time: np.ndarray, columns: list[Column], quantity: str) -> xr.Dataset:
-    """Return columns over a time [n], s, as a result at equal intervals; raises ValueError.
-
-    quantity : of columns without a label or unit.
-    """
-    waves: dict[tuple[str, Where, str], np.ndarray] = {}
-    for column in columns:
-        sign, name = (-1.0 if column.name.startswith("-") else 1.0), column.name.removeprefix("-")
-        at: Where = name
-        measured, component = quantity, ""
-        if place := _place(name):
-            measured, component, at = place
-        elif column.unit and column.unit not in UNITS[quantity]:
-            measured = next((one for one in MEASURED if column.unit in UNITS[one]), quantity)
-        waves[measured, at, component] = sign * column.si(UNITS[measured])
-    if len(waves) < len(columns):
-        raise ValueError("must name each column once")
-    return _dataset(time, waves)
-
-
-def _dataset(time: np.ndarray, waves: dict[tuple[str, Where, str], np.ndarray]) -> xr.Dataset:
-    """Return waveforms [n], by quantity, receiver and direction, as a result."""
-    quantities, places, axes = (list(dict.fromkeys(keys)) for keys in zip(*waves, strict=True))
+def dataset_of(time: np.ndarray, waves: Mapping[Any, np.ndarray]) -> xr.Dataset:
+    """Return waveforms [n], each by its `Where`, over a time [n], s, as a result at equal
+    intervals; raises ValueError."""
+    quantities, axes, places = (list(dict.fromkeys(keys)) for keys in zip(*waves, strict=True))
     if len(waves) < len(quantities) * len(places) * len(axes):
         raise ValueError("must hold the same components at every receiver")
     known = [(np.nan,) if isinstance(at, str) else at for at in places]
@@ -141,7 +109,7 @@ def _dataset(time: np.ndarray, waves: dict[tuple[str, Where, str], np.ndarray]) 
     receiver = "point" if sizes & {2, 3} else "velocity_y"
     found = xr.Dataset(coords={"time": time, "axis": axes})
     for quantity in quantities:
-        rows = [[waves[quantity, at, axis] for axis in axes] for at in places]
+        rows = [[waves[quantity, axis, at] for axis in axes] for at in places]
         found[quantity] = (receiver, "axis", "time"), np.array(rows)
     names = zip(RECEIVERS[receiver], np.transpose(known), strict=False)  # z in space
     found = found.assign_coords({name: (receiver, at) for name, at in names})

@@ -14,6 +14,7 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number, read_json
+from jointwave.results.netcdf import MAGIC
 
 LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
@@ -69,10 +70,6 @@ def sweep(folder: Path) -> None:
         shutil.rmtree(left, ignore_errors=True)
 
 
-#: First bytes of a result: NetCDF 3, or NetCDF 4 of other programs; a result may also be empty.
-NETCDF = (b"CDF", b"\x89HDF")
-
-
 #: First bytes of drawings and films by suffix; MP4 begins with the size of its first box.
 BEGINS: dict[str, tuple[bytes, ...]] = {
     **{".pdf": (b"%PDF",), ".svg": (b"<?xml", b"<svg"), ".png": (b"\x89PNG",)},
@@ -89,10 +86,9 @@ def check_out(path: Path, kinds: tuple[str, ...] = DRAWINGS) -> None:
     refuse_foreign(path, BEGINS[path.suffix])
 
 
-def refuse_foreign(path: Path, begins: tuple[bytes, ...] = NETCDF) -> None:
-    """Raise SceneError if the existing file at a path does not begin like one of jointwave's.
-
-    A link there is replaced, and its target is kept.
+def refuse_foreign(path: Path, begins: tuple[bytes, ...] = MAGIC) -> None:
+    """Raise SceneError if the existing file at a path does not begin like one of jointwave's; it
+    may be empty. A link there is replaced, and its target is kept.
     """
     if path.is_symlink() or not path.exists():
         return

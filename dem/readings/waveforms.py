@@ -77,7 +77,7 @@ def quantities(
     contact: np.ndarray,
     outside: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
-    """Return what is recorded by name, as `results.rock_mass` takes it.
+    """Return what is recorded by name, as `results.dataset` takes it.
 
     displacement, velocity : of the places [r, F, n]. contact : samples of the watched contacts
     [w, rows, n]. outside : what else acts on the places, as `mean_stress` takes it.

@@ -1,0 +1,106 @@
+"""Columns of the files of others, NetCDF, tables or seismograms, as arguments select them."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from jointwave.cases.records import Column, Columns, read_columns, require_series
+from jointwave.cases.units import split_unit
+from jointwave.compare.misfit.places import LABEL, Place, waveforms
+from jointwave.results.dataset import NAMES
+from jointwave.results.labels import QUANTITIES, RECEIVERS
+from jointwave.results.netcdf import is_netcdf, load_netcdf
+
+
+class Selection(NamedTuple):
+    """One argument of `--with`: column and label are empty if not given."""
+
+    text: str
+    path: Path
+    column: str = ""
+    label: str = ""
+
+    @property
+    def is_time(self) -> bool:
+        """Whether it selects the column of times."""
+        return split_unit(self.label)[0].lower() == "time"
+
+    def fits(self, column: Column) -> bool:
+        """Return whether a column is the one selected, or none is."""
+        headers = ("", column.name, f"{column.name} [{column.unit}]")
+        return self.column in headers or split_unit(self.column) == (column.name, column.unit)
+
+
+def selection(text: str) -> Selection:
+    """Return a parsed argument, FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL."""
+    ends = [len(text), *(i for i, letter in enumerate(text) if letter == ":")]
+    end = next((i for i in ends if Path(text[:i]).is_file()), len(text))
+    path, which = Path(text[:end]), text[end + 1 :].strip()
+    if _is_label(which):
+        return Selection(text, path, "", which)
+    column, equals, label = which.rpartition("=")
+    if not equals or not (_is_label(label) or split_unit(label)[0].lower() == "time"):
+        column, label = which, ""
+    return Selection(text, path, column.strip().strip("\"'"), label.strip())
+
+
+def _is_label(text: str) -> bool:
+    return LABEL.fullmatch(split_unit(text)[0].removeprefix("-").lstrip()) is not None
+
+
+def read_table(times: Selection, least: int, gaps: bool = True) -> Columns:
+    """Return the columns of a file over its times, in the unit of these that is selected.
+
+    times : their selection, or one that selects no times. least, gaps : as `read_columns` takes
+    them. Raises ValueError, in one phrase.
+    """
+    if is_netcdf(times.path):
+        found = read_netcdf(times.path, least)
+    else:
+        found = read_columns(times.path, times.column if times.is_time else "time", least, gaps)
+    unit = split_unit(times.label)[1] if times.is_time else ""
+    return found._replace(time=found.time._replace(unit=unit or found.time.unit))
+
+
+def selected(
+    columns: list[Column], choice: Selection, place_of: Callable[[str], Place | None]
+) -> list[tuple[Place | None, Column]]:
+    """Return the columns that an argument selects, with their sign and the unit that it gives, each
+    with its place by its name or the label. place_of : returns the place that a text names."""
+    fitting = [one for one in columns if choice.fits(one)]
+    label, unit = split_unit(choice.label)
+    wanted, found = place_of(label.removeprefix("-")), []
+    for one in fitting if wanted or not label else []:
+        place, said = place_of(one.name.removeprefix("-")), one.name.lower()
+        alone = len(fitting) == 1 and said not in QUANTITIES
+        if wanted and not place and (alone or said == wanted.quantity):
+            place = wanted
+        if wanted is None or (place and wanted.is_at(place)):
+            sign = -1.0 if "-" in (one.name[:1], label[:1]) else 1.0
+            found.append((place, Column(one.name, unit or one.unit, sign * one.values)))
+    return found
+
+
+def read_netcdf(path: Path, least: int) -> Columns:
+    """Return the waveforms of a result, or of one receiver that was selected from it, each at least
+    so many samples long; raises ValueError, in one phrase, where a file holds none."""
+    places = [name for names in RECEIVERS.values() for name in names]
+    wanted = {"time", *QUANTITIES, *RECEIVERS, *places, *NAMES}
+    try:
+        # Undecoded, times keep the numbers and the unit of the file.
+        found = load_netcdf(path, wanted, decode_times=False)
+    except Exception as error:  # from whichever library xarray uses, on a truncated file
+        raise ValueError(f"cannot be read as NetCDF: {str(error).partition('. ')[0]}") from None
+    found = found.expand_dims([n for n in RECEIVERS if n in found.coords and n not in found.dims])
+    held = [name for name in QUANTITIES if name in found]
+    if not held or "time" not in found.coords:
+        raise ValueError(f"must hold one or more of {', '.join(QUANTITIES)} over time")
+    for name in held:
+        if len(set(found[name].dims) & set(RECEIVERS)) != 1 or "time" not in found[name].dims:
+            raise ValueError(f"{name}: must be over time and one of {', '.join(RECEIVERS)}")
+    units = {name: str(of.attrs.get("units", "")).strip() for name, of in found.variables.items()}
+    waves = waveforms(found[held].transpose(*RECEIVERS, "time", ..., missing_dims="ignore"))
+    columns = [Column(str(p), units[p.quantity], wave.astype(float)) for p, wave in waves.items()]
+    all_of = Columns(Column("time", units["time"], found.time.values.astype(float)), columns)
+    require_series(all_of, "sample {}".format, least)
+    return all_of
