@@ -12,6 +12,7 @@ from jointwave.compare.misfit.metrics import delay, motion
 from jointwave.compare.readings.recordings import Recording, recording, sampling
 from jointwave.results.labels import RECEIVERS
 
+WAYS = "way_1", "way_2", "way_3"  # along the axes of receivers, from the first one
 HEARD = 0.01  # of the largest amplitude of the first record: frequencies that are read
 
 
@@ -19,7 +20,7 @@ def waveforms(
     result: Recording, quantity: str = "velocity", axis: str | None = None
 ) -> xr.DataArray:
     """Return one component of a quantity less its static state [receiver, time], with `distance`
-    (m) from the first receiver, nan where it is not known.
+    (m) from the first receiver, and the coordinates of its way, nan where it is not known.
 
     result : or a recording, as `recording` takes it. axis : the component, "x", "y", "xy" ...;
     None: the one that moves most.
@@ -39,7 +40,8 @@ def waveforms(
         found = found.isel({components: named.index(axis) if axis else int(loudest)})
     along = np.array([result[n].values - result[n].values[0] for n in places if n in result])
     found = found.transpose(receiver, "time").rename({receiver: "receiver"})
-    return found.assign_coords(distance=("receiver", np.hypot.reduce(along, axis=0)))
+    ways = dict(zip(WAYS, along, strict=False)) | {"distance": np.hypot.reduce(along, axis=0)}
+    return found.assign_coords({name: ("receiver", way) for name, way in ways.items()})
 
 
 def spectra(result: Recording, quantity: str = "velocity", axis: str | None = None) -> xr.DataArray:
@@ -141,9 +143,9 @@ def variables(
     }
 
 
-def known_distances(row: xr.DataArray) -> np.ndarray:
-    """Return the receivers' distances from the first one, m; raises SceneError without them."""
-    found = row["distance"].values
+def known_places(row: xr.DataArray) -> np.ndarray:
+    """Return the receivers' places [space, receiver], m; raises SceneError without them."""
+    found = np.array([row[name].values for name in WAYS if name in row.coords])
     if np.isnan(found).any():
         allowed = "are needed: columns named as velocity@20, or (time, values, distances)"
         raise SceneError("recording", "places of receivers", None, allowed)
@@ -166,7 +168,7 @@ def _pair(row: xr.DataArray, *receivers: int) -> np.ndarray:
 
 def _passage(row: xr.DataArray, one: int, other: int) -> tuple[float, float]:
     """Return the distance of two receivers, m, and how much later the other one moves, s."""
-    distance, (first, last) = known_distances(row), _pair(row, one, other)
-    if distance[other] == distance[one]:
+    places, (first, last) = known_places(row), _pair(row, one, other)
+    if not (way := float(np.linalg.norm(places[:, other] - places[:, one]))):
         raise SceneError("result", "receivers", f"{one} and {other}", "must be two places")
-    return float(distance[other] - distance[one]), delay(last, first, sampling(row))
+    return way, delay(last, first, sampling(row))

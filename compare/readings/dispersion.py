@@ -1,6 +1,6 @@
 """Phase speed against frequency, of a row of receivers (f-k) and of the theory of a pillar.
 
-The f-k spectrum is that of a row of receivers at any distances x_j with the spectra U_j,
+The f-k spectrum is that of a row of receivers at any places x_j on a line with the spectra U_j,
 
     P(f, k) = |sum_j U_j exp(i k x_j)|^2 / (n sum_j |U_j|^2),
 
@@ -27,7 +27,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.scene_type import pillar_of
-from jointwave.compare.readings.attenuation import known_distances, variables, waveforms
+from jointwave.compare.readings.attenuation import known_places, variables, waveforms
 from jointwave.compare.readings.recordings import Recording, sampling
 from jointwave.compare.scenes import AnySource, load
 
@@ -43,14 +43,15 @@ def dispersion(
 
     Frequencies are those that hold a thousandth of the largest amplitude. Wavenumbers (1/m) reach
     to half a wave between the two nearest receivers; those of waves that come back are negative.
+    Raises SceneError for receivers that are not on a line.
     """
     row = waveforms(result, quantity, axis)
-    x, spectra = known_distances(row), np.fft.rfft(row.values)
+    x, spectra = _along(known_places(row)), np.fft.rfft(row.values)
     size = np.sqrt((np.abs(spectra) ** 2).sum(axis=0))
     heard = size > HEARD * size.max()
     heard[0] = False
     frequency = np.fft.rfftfreq(row.sizes["time"], sampling(row))[heard]
-    highest = np.pi / np.diff(np.sort(x)).min()
+    highest = np.pi / np.diff(np.unique(x.round(9))).min()
     k = np.linspace(-highest, highest, FINER * len(x) + 1)
     beams = np.abs(np.exp(1j * np.outer(k, x)) @ spectra[:, heard]) ** 2
     power = (beams / (len(x) * size[heard] ** 2)).T
@@ -71,6 +72,17 @@ def dispersion(
         variables("frequency", {"frequency": (frequency, "frequency", "Hz")})
         | variables("wavenumber", {"wavenumber": (k, "wavenumber", "1/m")}),
     )
+
+
+def _along(places: np.ndarray) -> np.ndarray:
+    """Return receivers' places [space, receiver] along the line from the first to the last, m."""
+    last = places[:, -1]
+    line = last / (np.linalg.norm(last) or 1.0)
+    x = line @ places
+    aside = np.abs(np.outer(line, x) - places).max()
+    if not aside <= 1e-6 * np.abs(x).max() > 0:
+        raise SceneError("result", "receivers", None, "must lie on a line, first to last")
+    return x
 
 
 def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:

@@ -72,7 +72,8 @@ def curves_of(comparison: Comparison) -> Curves:
         if "velocity" in result and len(result["velocity"]) >= LEAST:
             row = waveforms(result)
             if (row != 0).any("time").all() and row["distance"].diff("receiver").min() > 0:
-                found[solution] = _measured(result, row)
+                with suppress(SceneError):  # receivers that are not on a line
+                    found[solution] = _measured(result, row)
     scene = comparison.scene
     if not found:
         return found

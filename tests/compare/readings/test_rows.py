@@ -63,6 +63,25 @@ def test_a_row_of_points_takes_what_moves_most():
     assert waveforms(result).distance.values == pytest.approx([0.0, 2.0, 5.0])
 
 
+def test_a_plane_wave_has_its_speed_between_any_points_on_a_line_and_its_trace_between_others():
+    """v = f(t - y / c): a line of 3-4-5 is passed at 5/4 c in whatever order its points come, and
+    from (6, 0) to (3, 4) the wave takes 4 / c over 5 m."""
+    c, time = 2000.0, 1e-5 * np.arange(2000)
+    wave = lambda y: np.exp(-(((time - 5e-3 - y / c) / 5e-4) ** 2))  # noqa: E731
+    places = np.array([[6.0, 8.0], [3.0, 4.0], [9.0, 12.0], [6.0, 0.0]])
+    at = {name: ("point", places[:, i]) for i, name in enumerate(("point_x", "point_y"))}
+    motion = np.stack([[0 * time, wave(y)] for _, y in places])
+    dims = ("point", "axis", "time")
+    result = xr.Dataset({"velocity": (dims, motion)}, {**at, "time": time, "axis": ["x", "y"]})
+    speeds = [wave_speed(result, *pair) for pair in ((0, 1), (1, 2), (3, 1))]
+    assert speeds == pytest.approx([-1.25 * c, 1.25 * c, 1.25 * c], rel=1e-4)
+    assert quality_factor(result, 1, 2).phase_speed.values == pytest.approx(1.25 * c, rel=1e-4)
+    row = dispersion(result.isel(point=slice(3))).sel(frequency=slice(50, 240))
+    assert row.phase_speed.values == pytest.approx(1.25 * c, rel=1e-4)
+    with pytest.raises(SceneError, match="must lie on a line"):
+        dispersion(result)
+
+
 def test_a_bar_has_its_speed_and_what_comes_back_a_negative_one(bar):
     result, speed = bar
     assert wave_speed(result) == pytest.approx(speed, rel=1e-6)
