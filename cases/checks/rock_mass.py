@@ -10,7 +10,7 @@ from jointwave.cases.geometry.cell_complex import PARALLEL, GeometryError
 from jointwave.cases.geometry.measure import cell_moments
 from jointwave.cases.geometry.sets import cut_by_sets, in_order
 from jointwave.cases.geometry.solids import taken_out
-from jointwave.cases.partition.joints import attitude, plane_sets, rocks_beside
+from jointwave.cases.partition.joints import plane_sets, rocks_beside
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.partition.shape import BESIDE, Shape, distance, shape_of
 from jointwave.cases.schema.joint import JointSet
@@ -58,13 +58,12 @@ def _of_support(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
 def _of_cuts(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     """Yield joints that miss the domain. Those of spacings that fit into it do not, and sets that
     end at others are known when they are cut. The contacts of a file become those of the sets."""
-    dimension = scene.domain.dimension
     if scene.domain.given is not None:
-        normals = [attitude(one, dimension)[0] for one in scene.joint_sets]
+        normals = [one.normal for one in scene.joint_sets]
         scene.domain.join([one.name for one in scene.joint_sets], np.array(normals))
         return
     whole = rock_of(outline, scene.regions)
-    for i, one in enumerate(plane_sets(scene.joint_sets, scene.regions, dimension)):
+    for i, one in enumerate(plane_sets(scene.joint_sets, scene.regions)):
         if one.ends_at or one.widest < float(np.ptp(scene.domain.corners @ one.normal)):
             continue
         try:
@@ -239,8 +238,7 @@ def _of_periodic_sides(scene: RockMass) -> Iterator[Wrong]:
     for i, one in enumerate(scene.regions):
         if one.outline is not None:
             continue
-        normal = attitude(one, scene.domain.dimension)[0]
-        for axis, side, across in zip("xyz", sides, normal, strict=False):
+        for axis, side, across in zip("xyz", sides, one.normal, strict=False):
             if getattr(scene.boundaries, side) == "periodic" and abs(across) > PARALLEL:
                 allowed = f"must be parallel to the {axis} axis: boundaries.{side} is periodic"
                 yield f"regions[{i}].dip", one.dip, allowed

@@ -32,7 +32,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
-from jointwave.cases.partition.joints import attitude, within
+from jointwave.cases.partition.joints import within
 from jointwave.cases.schema import joint as schema
 from jointwave.cases.schema.rock_mass import RockMass
 
@@ -53,9 +53,7 @@ class JointSet:
     shear_compliance: float = 0.0
 
 
-def compliant(
-    sets: Iterable[schema.JointSet], dimension: int = 2, stress: np.ndarray | None = None
-) -> list[JointSet]:
+def compliant(sets: Iterable[schema.JointSet], stress: np.ndarray | None = None) -> list[JointSet]:
     """Return the sets of a scene that have a spacing; a single joint is not a medium.
 
     stress : that has closed joints which stiffen, compression positive [d, d], Pa.
@@ -64,7 +62,7 @@ def compliant(
     for one in sets:
         if one.spacing:
             assert one.normal_stiffness and one.shear_stiffness
-            n, normal = attitude(one, dimension)[0], one.normal_stiffness
+            n, normal = one.normal, one.normal_stiffness
             if one.maximum_closure and stress is not None:
                 normal *= (1 + max(n @ stress @ n, 0.0) / (normal * one.maximum_closure)) ** 2
             Z = (1 / (one.spacing * stiffness) for stiffness in (normal, one.shear_stiffness))
@@ -83,7 +81,7 @@ def slowest(scene: RockMass) -> float:
         across = np.sin(level) * np.cos(turned), np.sin(level) * np.sin(turned)
         directions = np.stack([*across, np.cos(level)], axis=-1).reshape(-1, 3)
     media = (
-        (stiffness(elastic_rock(one.rock), compliant(one.joint_sets, dim), dim), one.rock.density)
+        (stiffness(elastic_rock(one.rock), compliant(one.joint_sets), dim), one.rock.density)
         for one in within(scene, scene.joint_sets)
     )
     return min(float(speeds(medium, rho, directions)[0].min()) for medium, rho in media)

@@ -30,7 +30,7 @@ def impedances(scene: AnyScene, normals: np.ndarray, region: np.ndarray) -> np.n
     stress = None if scene.prestress is None else scene.prestress.tensor[:dim, :dim]
     for own in np.unique(region):
         there, rock = region == own, elastic_rock(scenes[own].rock)
-        if sets := compliant(scenes[own].joint_sets, dim, stress):
+        if sets := compliant(scenes[own].joint_sets, stress):
             C = stiffness(rock, sets, dim)
             found[there] = impedance(C, scenes[own].rock.density, normals[there])
         else:

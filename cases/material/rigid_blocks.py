@@ -28,7 +28,7 @@ from jointwave.cases.material.effective_medium import (
 )
 from jointwave.cases.material.rock import elastic_rock, shear_modulus
 from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
-from jointwave.cases.partition.joints import attitude, rocks_of, within
+from jointwave.cases.partition.joints import rocks_of, within
 from jointwave.cases.partition.lattice import by_direction
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
@@ -86,15 +86,14 @@ def rigid_joints(
     has its own compliance, and nothing of the rock's. Raises SceneError where no lines are there to
     pass the waves of a scene.
     """
-    sets, dim = [*scene.joint_sets, *further], scene.domain.dimension
+    sets = [*scene.joint_sets, *further]
     if kinds is None:
         kinds = np.stack([np.arange(len(sets)), *np.full((2, len(sets)), -1)], axis=1)
     shares = rock_shares(scene, further)
     excess = np.zeros((len(kinds), 2))
     for row, (k, *pair) in zip(excess, kinds, strict=True):
-        normal = attitude(sets[k], dim)[0]
         for one in (shares[region] for region in pair):
-            at = one.direction[k] if pair[0] == pair[1] else one.parallel_to(normal)
+            at = one.direction[k] if pair[0] == pair[1] else one.parallel_to(sets[k].normal)
             row += one.excess(at) / 2
     real = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
     own = np.array([*real, *([(np.inf, np.inf)] * len(further))], dtype=float).reshape(-1, 2)
@@ -107,7 +106,7 @@ def long_wave_stiffness(scene: RockMass, further: list[JointSet]) -> np.ndarray:
     """Return C (Pa) of long waves through rigid blocks of the rock of no region, in Voigt's form;
     enormous for strains that no joint gives way to."""
     share, dim = rock_shares(scene, further)[-1], scene.domain.dimension
-    own = compliant(within(scene, scene.joint_sets)[-1].joint_sets, dim)
+    own = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     excess = zip(share.normals, share.compliance, strict=True)
     sets = [*own, *(effective_medium.JointSet(n, *map(float, z)) for n, z in excess)]
     return joints_alone(sets, dim)
@@ -124,9 +123,9 @@ def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:
 def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
     """Return the same of a scene of one rock, some of whose sets, the first ones, are real."""
     dim = scene.domain.dimension
-    groups = by_direction(scene.joint_sets, dim)
+    groups = by_direction(scene.joint_sets)
     spaced = [group for group in groups if any(one.spacing for one in group)]
-    normals = np.array([attitude(group[0], dim)[0] for group in spaced])
+    normals = np.array([group[0].normal for group in spaced])
     if not spaced:  # rock between joints that are alone stays rigid
         none = np.zeros((0, 2))
         return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.partition.joints import attitude, rocks_beside
+from jointwave.cases.partition.joints import rocks_beside
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import IntactRock, RockMass
@@ -43,7 +43,7 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
     corners, found = np.array(scene.domain.corners), []
     for one in sets:
         assert one.normal_stiffness is not None
-        extent = float(np.ptp(corners @ attitude(one, scene.domain.dimension)[0]))
+        extent = float(np.ptp(corners @ one.normal))
         mass = rocks_beside(scene, one)[0].density * (one.spacing or extent / 2)
         found.append(2 * (one.damping_ratio or 0.0) * sqrt(mass / one.normal_stiffness))
     return np.array(found)
@@ -62,8 +62,7 @@ def refuse_beyond_strength(scene: AnyScene) -> None:
 def beyond_strength(joint: JointSet, sigma: np.ndarray) -> str | None:
     """Return whether a joint "opens" or "slides" under a stress [d, d], Pa; None if it carries
     it."""
-    normal, _ = attitude(joint, len(sigma))
-    traction = sigma @ normal
+    normal, traction = joint.normal, sigma @ joint.normal
     t_n, slack = float(normal @ traction), SLACK * np.abs(sigma).max()
     t_s = float(np.linalg.norm(traction - t_n * normal))
     tensile = inf if joint.tensile_strength is None else joint.tensile_strength

@@ -1,7 +1,7 @@
-"""Joint sets of a scene as sets of planes, its regions of rock, and the attitude of planes."""
+"""Joint sets of a scene as sets of planes, and its regions of rock."""
 
 from collections.abc import Sequence
-from math import atan2, cos, degrees, hypot, radians, sin
+from math import atan2, degrees, hypot
 
 import numpy as np
 import shapely
@@ -11,28 +11,8 @@ from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, corners_of, 
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import REST, IntactRock, Region, RockMass
 
-#: Cosine and sine of dips, degrees, that are exact.
-EXACT = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0)}
-
-
-def direction_of(dip: float) -> np.ndarray:
-    """Return the unit vector [2] along joints of this dip, degrees from the horizontal."""
-    exact = EXACT.get(abs(dip), (cos(radians(dip)), sin(radians(abs(dip)))))
-    return np.array([exact[0], exact[1] if dip >= 0 else -exact[1]])
-
-
-def attitude(one: JointSet | Region, dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the unit normal [d] of planes, which points up, and unit vectors in them [d - 1, d].
-
-    In the plane these are the direction of joints, in space the strike and the line of dip.
-    """
-    down, up = direction_of(one.dip)
-    if dim == 2:
-        return np.array([-up, down]), np.array([[down, up]])
-    turn = (one.dip_direction or 0.0) % 360
-    north, east = direction_of(turn - 360 if turn > 180 else turn)
-    along = np.array([[north, -east, 0.0], [down * east, down * north, -up]])
-    return np.array([up * east, up * north, down]), along
+#: What planes have from their joint set as it is.
+SAME = ("name", "normal", "spacing", "offset", "scatter", "seed")
 
 
 def dips_of(normal: np.ndarray) -> dict[str, float]:
@@ -45,28 +25,14 @@ def dips_of(normal: np.ndarray) -> dict[str, float]:
     return {"dip": round(degrees(dip), 12), "dip_direction": round(degrees(towards) % 360, 12)}
 
 
-def plane_sets(
-    sets: Sequence[JointSet], regions: Sequence[Region] = (), dim: int = 2
-) -> list[PlaneSet]:
+def plane_sets(sets: Sequence[JointSet], regions: Sequence[Region] = ()) -> list[PlaneSet]:
     """Return the planes of joint sets in a domain with some regions of rock."""
     numbers = {REST: -1, **{one.name: k for k, one in enumerate(regions)}}
     found = []
     for one in sets:
-        normal, along = attitude(one, dim)
-        found.append(
-            PlaneSet(
-                name=one.name,
-                normal=normal,
-                along=along,
-                spacing=one.spacing,
-                through=np.zeros(dim) if one.through is None else np.array(one.through),
-                ends_at=tuple(one.ends_at),
-                offset=one.offset,
-                scatter=one.scatter,
-                seed=one.seed,
-                regions=tuple(numbers[name] for name in one.regions) if one.regions else None,
-            )
-        )
+        own = tuple(numbers[name] for name in one.regions) or None
+        same = {key: getattr(one, key) for key in SAME} | {"ends_at": tuple(one.ends_at)}
+        found.append(PlaneSet(along=one.frame[1:], through=one.origin, regions=own, **same))
     return found
 
 
@@ -74,7 +40,7 @@ def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
     """Return the region that contains each place (float array [n, d], m), or ROCK: the last of
     those whose line it lies above, or whose outline it lies in."""
     found = np.full(len(places), ROCK)
-    for k, one in enumerate(bounded(regions, places.shape[1])):
+    for k, one in enumerate(bounded(regions)):
         found[one.contains(places)] = k
     return found
 
@@ -110,12 +76,12 @@ def strata(regions: Sequence[Region]) -> list[Region]:
     return [one for one in regions if one.outline is None]
 
 
-def bounded(regions: Sequence[Region], dim: int = 2) -> list[Solid | HalfSpace]:
+def bounded(regions: Sequence[Region]) -> list[Solid | HalfSpace]:
     """Return what bounds each region."""
     found: list[Solid | HalfSpace] = []
     for one in regions:
         if one.outline is not None:
             found.append(polygon_solid(corners_of(shapely.Polygon(one.outline))))
         else:
-            found.append(HalfSpace(attitude(one, dim)[0], np.array(one.through)))
+            found.append(HalfSpace(one.normal, np.array(one.through)))
     return found

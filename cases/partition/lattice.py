@@ -16,7 +16,7 @@ import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import blocks_of
-from jointwave.cases.partition.joints import ROCK, attitude, dips_of, within
+from jointwave.cases.partition.joints import ROCK, dips_of, within
 from jointwave.cases.partition.scene import rock_of
 from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.schema.joint import JointSet
@@ -101,8 +101,8 @@ def further_sets(scene: RockMass) -> list[JointSet]:
 def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
     """Return the sets of cuts of a scene of one rock."""
     dim, found = scene.domain.dimension, []
-    groups = by_direction(scene.joint_sets, dim)
-    normals = [attitude(group[0], dim)[0] for group in groups]
+    groups = by_direction(scene.joint_sets)
+    normals = [group[0].normal for group in groups]
     for normal, group in zip(normals, groups, strict=True):
         first = next((one for one in group if one.spacing is not None), group[0])
         if first.spacing is None:
@@ -139,13 +139,12 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
 
 def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
     """Return unit vectors in the directions in which no joints cut, upwards first without any."""
-    frames = [attitude(group[0], dim) for group in groups]
-    normals = np.array([normal for normal, _ in frames]).reshape(-1, dim)
-    rank = np.linalg.matrix_rank(normals, tol=ALIKE) if frames else 0
+    normals = np.array([group[0].normal for group in groups]).reshape(-1, dim)
+    rank = np.linalg.matrix_rank(normals, tol=ALIKE) if groups else 0
     if rank == 2 < dim:
         axis = np.cross(*normals[:2])
         return [axis / np.linalg.norm(axis)]
-    return [*np.eye(dim)[::-1]] if rank == 0 else [*frames[0][1]] if rank == 1 else []
+    return [*np.eye(dim)[::-1]] if rank == 0 else [*groups[0][0].frame[1:]] if rank == 1 else []
 
 
 def squared(scene: RockMass) -> bool:
@@ -154,16 +153,15 @@ def squared(scene: RockMass) -> bool:
     Triangles and tetrahedra can have any Poisson's ratio (`material.effective_medium`), boxes none;
     but the faces of boxes can run along periodic sides, which cut no block in two then.
     """
-    normals = (attitude(one, scene.domain.dimension)[0] for one in scene.joint_sets)
-    fit = all(np.abs(normal).max() == 1 for normal in normals)
+    fit = all(np.abs(one.normal).max() == 1 for one in scene.joint_sets)
     return scene.rock.intact_poisson == 0 or (fit and bool(scene.boundaries.sides("periodic")))
 
 
-def by_direction(sets: list[JointSet], dim: int) -> list[list[JointSet]]:
+def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:
     """Return joint sets in groups of one direction."""
     groups: list[list[JointSet]] = []
     for one in sets:
-        pairs = [[attitude(each, dim)[0] for each in (one, group[0])] for group in groups]
+        pairs = ([one.normal, group[0].normal] for group in groups)
         ranks = [int(np.linalg.matrix_rank(pair, tol=ALIKE)) for pair in pairs]
         if 1 not in ranks:
             groups.append([])

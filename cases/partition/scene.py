@@ -16,7 +16,7 @@ from jointwave.cases.geometry.periodic import Across, contacts_across
 from jointwave.cases.geometry.pieces import without_slivers
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
-from jointwave.cases.partition.joints import attitude, bounded, plane_sets
+from jointwave.cases.partition.joints import bounded, plane_sets
 from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import JointSet
@@ -35,7 +35,7 @@ OF_BLOCK = {2: 2500, 3: 16_000}
 
 def rock_of(shape: Shape, regions: Sequence[Region]) -> Complex:
     """Return a domain in cells of one region of rock each."""
-    return cut_into_regions(shape.hull, bounded(regions, shape.hull.dim), shape.tolerance)
+    return cut_into_regions(shape.hull, bounded(regions), shape.tolerance)
 
 
 def blocks_of_domain(
@@ -58,7 +58,7 @@ def blocks_of_domain(
     if domain.given is not None:
         body = domain.cells([one.name for one in sets])
     else:
-        planes = plane_sets(every, regions, shape.hull.dim)
+        planes = plane_sets(every, regions)
         body = cut_by_sets(rock_of(shape, regions), planes, tolerance, len(sets))
         body = taken_out(body, shape.solids, tolerance)
         if domain.non_convex == "refuse":
@@ -134,7 +134,7 @@ def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
         return float(domain.given.count)
     corners, dim, count = np.array(domain.corners), domain.dimension, 1.0
     volume = cell_moments(shape_of(domain).hull).size[0]
-    normals = [attitude(one, dim)[0] for one in sets]
+    normals = [one.normal for one in sets]
     joints = [
         float(np.ptp(corners @ normal)) / one.spacing if one.spacing else 1.0
         for normal, one in zip(normals, sets, strict=True)

@@ -1,8 +1,10 @@
 """Keys of the joint law: of all joints, and of single ones that differ."""
 
+from math import cos, radians, sin
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationInfo, model_validator
+import numpy as np
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from jointwave.cases.schema.values import (
     Dip,
@@ -12,7 +14,7 @@ from jointwave.cases.schema.values import (
     Positive,
     Table,
     Words,
-    check_attitude,
+    check_dimension,
     contradiction,
 )
 
@@ -103,7 +105,52 @@ class SoftLayer(JointLaw):
         return self.model_copy(update={key: getattr(joints, key) for key in absent})
 
 
-class JointSet(Joints):
+#: Cosine and sine of dips, degrees, that are exact.
+EXACT = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0)}
+
+
+def direction_of(dip: float) -> np.ndarray:
+    """Return the unit vector [2] along joints of this dip, degrees from the horizontal."""
+    exact = EXACT.get(abs(dip), (cos(radians(dip)), sin(radians(abs(dip)))))
+    return np.array([exact[0], exact[1] if dip >= 0 else -exact[1]])
+
+
+class Inclined(Table):
+    """What lies along planes of a dip, and in space of a direction of their line of dip."""
+
+    _dimension: int = PrivateAttr(default=2)
+
+    @model_validator(mode="after")
+    def _has_attitude(self: Any, info: ValidationInfo) -> Any:
+        if check_dimension(self, info, space=("dip_direction",)):
+            self._dimension = 3
+            if self.dip % 180 and self.dip_direction is None:
+                allowed = (
+                    "is required in space: of the line of dip, degrees clockwise from north (y)"
+                )
+                raise contradiction(".dip_direction", None, allowed)
+        return self
+
+    @property
+    def frame(self: Any) -> np.ndarray:
+        """The unit normal of the planes, which points up, and unit vectors in them [d, d]: in the
+        plane the direction of joints, in space the strike and the line of dip."""
+        down, up = direction_of(self.dip)
+        if self._dimension == 2:
+            return np.array([[-up, down], [down, up]])
+        turn = (self.dip_direction or 0.0) % 360
+        north, east = direction_of(turn - 360 if turn > 180 else turn)
+        return np.array(
+            [[up * east, up * north, down], [north, -east, 0], [down * east, down * north, -up]]
+        )
+
+    @property
+    def normal(self) -> np.ndarray:
+        """The unit normal of the planes [d], which points up."""
+        return self.frame[0]
+
+
+class JointSet(Joints, Inclined):
     """A set of parallel joints, or one joint, and its law."""
 
     name: Words  #: used in `ends_at`, tables and figures
@@ -122,7 +169,7 @@ class JointSet(Joints):
     scatter: Annotated[float, Field(ge=0, le=0.5)] = 0.0
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = None  #: of the scatter
 
-    @model_validator(mode="after")
-    def _has_attitude(self, info: ValidationInfo) -> "JointSet":
-        check_attitude(self, info)
-        return self
+    @property
+    def origin(self) -> np.ndarray:
+        """A point of one of the joints [d], m."""
+        return np.zeros(self._dimension) if self.through is None else np.array(self.through)

@@ -13,7 +13,7 @@ from pydantic import Field, ValidationInfo, model_validator
 
 from jointwave.cases.schema.damping import Attenuating, Damping
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.joint import Inclined, JointSet
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.scene import SceneBase
 from jointwave.cases.schema.tables import (
@@ -36,7 +36,6 @@ from jointwave.cases.schema.values import (
     Table,
     UnitVector,
     Words,
-    check_attitude,
     check_dimension,
     contradiction,
     dimension,
@@ -160,7 +159,7 @@ class NumericsOfRock(Numerics):
 REST = "rock"
 
 
-class Region(Table):
+class Region(Inclined):
     """Rock above a line or within an outline, in space above a plane, unless a later region covers
     it; absent keys are taken from [rock]. Its boundary is welded except where a joint lies along
     it."""
@@ -180,7 +179,6 @@ class Region(Table):
     @model_validator(mode="after")
     def _one_shape(self, info: ValidationInfo) -> "Region":
         check_dimension(self, info, plane=("outline",))
-        check_attitude(self, info)
         if (self.through is None) == (self.outline is None):
             raise contradiction(".through", self.through, "give through or outline, not both")
         if self.outline is not None and self.dip:

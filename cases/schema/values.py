@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
@@ -122,14 +122,6 @@ def check_dimension(
             allowed = f"has no meaning in {'space' if in_space else 'the plane'}"
             raise contradiction(f".{key}", getattr(table, key), allowed)
     return in_space
-
-
-def check_attitude(table: Any, info: ValidationInfo) -> None:
-    """Refuse a plane in space by its dip alone, and a dip direction in the plane."""
-    in_space = check_dimension(table, info, space=("dip_direction",))
-    if in_space and table.dip % 180 and table.dip_direction is None:
-        allowed = "is required in space: of the line of dip, degrees clockwise from north (y)"
-        raise contradiction(".dip_direction", None, allowed)
 
 
 def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:

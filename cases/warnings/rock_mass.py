@@ -12,7 +12,7 @@ from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import across, plane_wave
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import attitude, rocks_of
+from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
@@ -54,14 +54,14 @@ def _fastest(scene: RockMass) -> float:
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
     """Say where joints of two sets coincide: only the law of the first holds there."""
-    sets, corners, dim = scene.joint_sets, np.array(scene.domain.corners), scene.domain.dimension
+    sets, corners = scene.joint_sets, np.array(scene.domain.corners)
     plain = [
         (i, one)
         for i, one in enumerate(sets)
         if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
     ]
     for (i, one), (k, other) in combinations(plain, 2):
-        normals = np.array([attitude(each, dim)[0] for each in (one, other)])
+        normals = np.array([each.normal for each in (one, other)])
         if np.linalg.matrix_rank(normals, tol=PARALLEL) == 1:
             places = _places(one, normals[1], corners), _places(other, normals[1], corners)
             apart = np.abs(np.subtract.outer(*places))
@@ -78,14 +78,13 @@ def _at(place: Sequence[float]) -> str:
 
 def _away(one: JointSet, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Return the distances of points [n, d] from the nearest joint of a set without scatter, m."""
-    normal = attitude(one, corners.shape[1])[0]
-    apart = np.subtract.outer(points @ normal, _places(one, normal, corners))
+    apart = np.subtract.outer(points @ one.normal, _places(one, one.normal, corners))
     return np.abs(apart).min(axis=1, initial=np.inf)
 
 
 def _places(one: JointSet, normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Return where the joints of a set without scatter lie along a normal of theirs, m."""
-    origin, across = normal @ (one.through or 0 * normal), corners @ normal
+    origin, across = normal @ one.origin, corners @ normal
     if one.spacing is None:
         return np.array([origin])
     first = np.ceil((across.min() - origin) / one.spacing)
@@ -97,7 +96,7 @@ def _of_places(scene: RockMass) -> Iterator[str]:
     """Say which spacings exceed the domain, and which receivers of joints are far from any."""
     corners, sets, dim = np.array(scene.domain.corners), scene.joint_sets, scene.domain.dimension
     for i, one in enumerate(sets):
-        extent = float(np.ptp(corners @ attitude(one, dim)[0]))
+        extent = float(np.ptp(corners @ one.normal))
         if one.spacing is not None and one.spacing > extent and not scene.domain.file_key:
             yield (
                 f"joint_sets[{i}].spacing = {one.spacing:g} m exceeds the domain, {extent:g} m "
@@ -158,7 +157,7 @@ def _block_size(scene: RockMass) -> float | None:
     size, dim = float(scene.domain.extent.max()), scene.domain.dimension
     waves = _plane_waves(scene)
     if len(scene.joint_sets) == 1 and waves is not None:
-        along = attitude(scene.joint_sets[0], dim)[1]
+        along = scene.joint_sets[0].frame[1:]
         if all(np.abs(along @ direction).max() < GRAZING for direction, _ in waves.values()):
             # Under shear, blocks as wide as the period turn.
             turned = any(np.abs(along @ motion).max() > GRAZING for _, motion in waves.values())

@@ -26,7 +26,7 @@ def speeds(scene: RockMass, resolved: Rock) -> Speeds:
         return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
     rock = elastic_rock(scene.rock)
     dim = scene.domain.dimension
-    sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets, dim)
+    sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     found = _along_axes(stiffness(rock, sets, dim), scene) if sets else {}
     if resolved is Rock.JOINTED or not sets:
         found["intact rock"] = float(rock.p_speed), float(rock.s_speed)

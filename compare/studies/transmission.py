@@ -26,7 +26,6 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError, require
 from jointwave.cases.material.rock import Values, elastic_rock
-from jointwave.cases.partition.joints import attitude
 from jointwave.cases.read import load as scenes_of
 from jointwave.cases.schema.rock_mass import IntactRock, RockMass
 from jointwave.compare.engines import Progress, names, solve
@@ -211,7 +210,7 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     omega = 2 * pi / float(wave.period or nan)
     kind: Kind = "P" if wave.kind == "P" else "SV"
-    axes = axes_of(rock, kind, np.array(wave.direction), attitude(scene.joint_sets[0], 2)[0])
+    axes = axes_of(rock, kind, np.array(wave.direction), scene.joint_sets[0].normal)
     p, across = axes.slowness, slownesses_across(rock, axes.slowness)
     waves = [int(np.argmax(axes.incident)), 2, 3, 0, 1]  # incident, reflected, transmitted
     modes = (polarisations(rock, p).reshape(4, 2) @ axes.rows)[waves]

@@ -128,7 +128,7 @@ def rock_mass(scene: RockMass, smeared: list[JointSet], model: str) -> list[Mate
     return [
         Material(
             one.rock.density,
-            unrelaxed * stiffness(elastic_rock(one.rock), compliant(one.joint_sets, dim), dim),
+            unrelaxed * stiffness(elastic_rock(one.rock), compliant(one.joint_sets), dim),
             eta,
         )
         for one in within(scene, smeared)

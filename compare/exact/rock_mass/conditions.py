@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.incident import across, in_components
-from jointwave.cases.partition.joints import attitude, strata
+from jointwave.cases.partition.joints import strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.law_parts import PARTS
@@ -127,7 +127,7 @@ def all_parallel(scene: RockMass) -> bool:
 def normals_of(scene: RockMass) -> list[np.ndarray]:
     """Return unit normals [d] of the joint sets and of the boundaries of regions."""
     planes: list[JointSet | Region] = [*scene.joint_sets, *strata(scene.regions)]
-    return [attitude(one, scene.domain.dimension)[0] for one in planes]
+    return [one.normal for one in planes]
 
 
 def along(one: np.ndarray, other: np.ndarray, sine: float = PARALLEL) -> bool:

@@ -69,7 +69,7 @@ def medium_field(scene: RockMass) -> MediumField:
 def medium_stiffness(scene: RockMass) -> np.ndarray:
     """Return the stiffness of the medium in Voigt's form, Pa."""
     dim = scene.domain.dimension
-    return stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets, dim), dim)
+    return stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets), dim)
 
 
 def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:

@@ -24,7 +24,7 @@ from jointwave.cases.incident import (
     free_field,
     plane_wave,
 )
-from jointwave.cases.partition.joints import attitude, strata
+from jointwave.cases.partition.joints import strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import JointSet
@@ -127,9 +127,9 @@ def _planes_in_the_plane(scene: RockMass) -> RockMass:
         if (reason := scatters_otherwise(planes, leaves=False)) is not None:
             allowed = f"enter regions in which their field is not known: {reason}"
             raise SceneError(scene.where, "waves", len(scene.waves), allowed)
-        sets = [one for one in sets if along(attitude(one, 2)[0], normals_of(planes)[0])]
+        sets = [one for one in sets if along(one.normal, normals_of(planes)[0])]
     face, cuts = free_face(scene), list[JointSet | Region]([*layers, *sets])
-    normals = [attitude(one, 2)[0] for one in cuts]
+    normals = [one.normal for one in cuts]
     runs_along = any(abs(n @ one.direction) < ALONG for one in scene.waves for n in normals)
     sides = {side: "quiet" for side in scene.boundaries.sides("periodic")}
     repeats = [axis for axis, side in enumerate(("left", "bottom")) if side in sides]

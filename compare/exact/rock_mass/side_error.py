@@ -14,7 +14,7 @@ import numpy as np
 
 from jointwave.cases.incident import PlaneWave, in_components, plane_wave
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import attitude, rocks_of
+from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.shape import Face, distance, shape_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
@@ -163,7 +163,7 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     peak = max(float(np.abs(one.pulse.value(times)).max()) for one in waves)
     stress = _still(scene, places)[:, :, None] - field(places, times).stress
     for one in sets:
-        n = attitude(one, scene.domain.dimension)[0]
+        n = one.normal
         moves, traction = max(_moved(wave, n) for wave in waves), on_face(stress, n)
         pressed = np.einsum("i,min->mn", n, traction)
         shear = np.linalg.norm(traction - pressed[:, None] * n[:, None], axis=1)

@@ -14,7 +14,7 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.material.rock_mass import set_time_constants
-from jointwave.cases.partition.joints import attitude, rocks_of, strata
+from jointwave.cases.partition.joints import rocks_of, strata
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import TOLERANCE, shape_of
 from jointwave.cases.schema.pulse import Wave
@@ -111,7 +111,7 @@ def stiffnesses(scene: RockMass) -> np.ndarray:
     stress: k (1 + sigma / k d_m)^2 of joints that stiffen as they close."""
     found = []
     for one in scene.joint_sets:
-        n, K = attitude(one, scene.domain.dimension)[0], one.normal_stiffness
+        n, K = one.normal, one.normal_stiffness
         pressed = max(float(n @ scene.prestress.tensor @ n), 0.0) if scene.prestress else 0.0
         if K and one.maximum_closure is not None:
             K *= (1 + pressed / (K * one.maximum_closure)) ** 2

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from jointwave.cases.geometry.cell_complex import GeometryError
 from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.geometry.sets import places_between
-from jointwave.cases.partition.joints import direction_of, plane_sets
+from jointwave.cases.partition.joints import plane_sets
 from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.partition.scene import least_width
 from jointwave.cases.schema.domain import Domain
-from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.joint import JointSet, direction_of
 from tests.cases.partition.polygons import angles, block_at, closed, width
 
 LAW = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
