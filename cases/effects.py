@@ -89,6 +89,9 @@ def _of_column(scene: Scene) -> Iterator[Called]:
             yield part.name, None, NO_SHEAR
         else:
             yield part.name, any(map(part.of, laws)) and part.why(True), part.why(False)
+    yield from _of_sides(scene, ENDS, "end")
+    shakes = f"load.quantity = '{scene.load.quantity}'"
+    yield "shaken base", scene.shakes_base and shakes, shakes
 
 
 def _of_joint_sets(scene: RockMass) -> Iterator[Called]:
@@ -111,6 +114,8 @@ def _of_joint_sets(scene: RockMass) -> Iterator[Called]:
     waves, pushed = len(scene.waves), len(scene.pushes)
     yield "incident waves", waves and f"{waves} in [[waves]]", "no [[waves]]"
     yield "loads", pushed and f"{pushed} in [[loads]]", "no [[loads]]"
+    yield from _of_sides(scene, SIDES, "side")
+    yield "shaken base", scene.bases and "a load of kind 'base'", "no base is shaken"
 
 
 def _carries(slides: bool) -> str:
@@ -118,17 +123,14 @@ def _carries(slides: bool) -> str:
     return "every joint carries tension" + ", also with friction" * slides
 
 
-def _of_any(scene: AnyScene) -> Iterator[Called]:
-    """Yield the effects of sides, of what is recorded, and on blocks themselves."""
-    kinds, noun = (ENDS, "end") if scene.is_column else (SIDES, "side")
+def _of_sides(scene: AnyScene, kinds: Iterable[str], noun: str) -> Iterator[Called]:
     for kind in kinds:
         places = ", ".join(key for key, held in scene.sides.items() if held == kind)
         yield f"{kind} {noun}s", places, f"no {noun} is {kind}"
-    if scene.is_column:
-        shakes, still = scene.shakes_base, f"load.quantity = '{scene.load.quantity}'"
-        yield "shaken base", shakes and still, still
-    else:
-        yield "shaken base", scene.bases and "a load of kind 'base'", "no base is shaken"
+
+
+def _of_any(scene: AnyScene) -> Iterator[Called]:
+    """Yield the effects of what is recorded, and those on blocks themselves."""
     record = scene.record
     yield "energy ledger", record.energy and "record.energy is on", "record.energy = false"
     every = record.fields

@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from jointwave.cases.size import memory, spoken
+from jointwave.cases.size import excess
 
 #: Keys of many parts: tomllib takes time cubic in their number.
 LONG_KEY = re.compile(r"""(?<![\w"'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
@@ -33,9 +33,8 @@ def read_bytes(path: Path, largest: int, times: int) -> bytes:
             raise ValueError("is not a regular file")
         size = path.stat().st_size
         if size <= largest:
-            if times * size > max(memory(), SMALL):
-                need = f"would need about {spoken(times * size)} of memory"
-                raise ValueError(f"{need}; {spoken(memory())} available")
+            if times * size > SMALL and (why := excess(times * size)):
+                raise ValueError(why)
             with path.open("rb") as file:
                 content = file.read(largest + 1)  # virtual files may report no size
             if len(content) <= largest:

@@ -7,10 +7,12 @@ the key of the scene that decides it. A run is refused where the sum is beyond `
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import reduce
+from typing import Any
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.size import LARGEST_VARIABLE, LIMIT, memory, spoken
+from jointwave.cases.size import LARGEST_VARIABLE, excess, spoken
 
 #: Bytes a step for the load's mean over it, and what that is made of; its history is table.
 LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
@@ -39,27 +41,15 @@ def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
     """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
     if (asked := _asked.get()) is not None:
         asked.update({key: max(size, asked.get(key, 0.0)) for key, size in parts.items()})
-    total, limit = sum(parts.values()), memory()
-    if total <= limit:
-        return
     key = max(parts, key=lambda k: parts[k])
-    raise SceneError(
-        scene.where,
-        key,
-        value_of(scene, key),
-        f"the run would need about {spoken(total)} of memory, {spoken(parts[key])} of it for this; "
-        f"{spoken(limit)} available (set {LIMIT} to change it, in GB)",
-    )
+    if why := excess(sum(parts.values()), f", {spoken(parts[key])} of it for this"):
+        raise SceneError(scene.where, key, value_of(scene, key), f"the run {why}")
 
 
-def value_of(scene: AnyScene, key: str) -> object:
+def value_of(scene: Any, key: str) -> object:
     """Return the value of a dotted key of a scene."""
-    found: object = scene
-    for part in key.split("."):
-        found = getattr(found, part)
-    if isinstance(found, list):
-        return f"{len(found):,} places"
-    return found
+    found = reduce(getattr, key.split("."), scene)
+    return f"{len(found):,} places" if isinstance(found, list) else found
 
 
 def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:

@@ -41,10 +41,21 @@ def _of_machine() -> float:
     return min(found)
 
 
+def excess(size: float, part: str = "") -> str:
+    """Return in words how many bytes are more than a run may use; empty where they are not.
+
+    part : what of them the message is about, in words.
+    """
+    if size <= (limit := memory()):
+        return ""
+    need = f"would need about {spoken(size)} of memory{part}"
+    return f"{need}; {spoken(limit)} available (set {LIMIT} to change it, in GB)"
+
+
 def require(size: float, what: str) -> None:
     """Raise MemoryError for more bytes than a run may take."""
-    if size > memory():
-        raise MemoryError(f"{what} would need about {spoken(size)}; {spoken(memory())} available")
+    if why := excess(size):
+        raise MemoryError(f"{what} {why}")
 
 
 @contextmanager

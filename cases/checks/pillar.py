@@ -33,7 +33,22 @@ OF_JOINTS += [part.keys[0] for part in PARTS]
 
 def rules(scene: Scene) -> list[Iterator[Wrong]]:
     """Return the rules of a pillar whose tables are each right."""
-    return [one(scene) for one in RULES]
+    every = (
+        _of_segments,
+        _of_places,
+        _of_layers,
+        _of_receivers,
+        _of_rock,
+        _of_lever,
+        _of_load,
+        _of_support,
+        _of_damping,
+        _of_strength,
+        _of_fracture,
+        _of_discretisation,
+        _of_scheme,
+    )
+    return [rule(scene) for rule in every]
 
 
 def _of_layers(scene: Scene) -> Iterator[Wrong]:
@@ -228,20 +243,3 @@ def _of_segments(scene: Scene) -> Iterator[Wrong]:
         if welded and not (own or scene.joints.normal_stiffness):
             allowed = "needs a normal_stiffness: intact segments meet without a joint"
             yield f"soft_layers[{i}].y", layer.y, allowed
-
-
-RULES = (
-    _of_segments,
-    _of_places,
-    _of_layers,
-    _of_receivers,
-    _of_rock,
-    _of_lever,
-    _of_load,
-    _of_support,
-    _of_damping,
-    _of_strength,
-    _of_fracture,
-    _of_discretisation,
-    _of_scheme,
-)

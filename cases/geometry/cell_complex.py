@@ -37,10 +37,6 @@ class Sliver(GeometryError):
     """A block too thin or too pointed to be passed on."""
 
 
-class NonConvex(GeometryError):
-    """A block that is not convex, at an opening or a corner of the outline."""
-
-
 class Halves(NamedTuple):
     """Facets, once for each cell that they bound: int arrays [h].
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from jointwave.cases.geometry.cell_complex import NO_SET, Complex, Halves, NonConvex
+from jointwave.cases.geometry.cell_complex import NO_SET, Complex, GeometryError, Halves
 from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.geometry.pieces import Pieces, clipped
 from jointwave.cases.geometry.relations import groups
@@ -69,9 +69,9 @@ class Solid:
         return inside
 
 
-def polygon_solid(corners: np.ndarray) -> Solid:
-    """Return a polygon in the plane, float array [k, 2], m, counter-clockwise."""
-    return Solid(corners, np.eye(2))
+def polygon_solid(polygon: shapely.Geometry) -> Solid:
+    """Return a polygon in the plane, m."""
+    return Solid(corners_of(polygon), np.eye(2))
 
 
 def prism(corners: np.ndarray, axis: int, span: tuple[float, float]) -> Solid:
@@ -153,7 +153,7 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
 
 
 def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
-    """Raise NonConvex if a block had to be cut through intact rock beside an opening."""
+    """Raise GeometryError if a block had to be cut through intact rock beside an opening."""
     cuts = np.flatnonzero(_through_rock(body))
     if not len(cuts):
         return
@@ -162,7 +162,7 @@ def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
         corners = np.concatenate([solid.points() for solid, _ in solids])
         away = np.linalg.norm(at[:, None] - corners, axis=2).min(axis=0)
         at = corners[[np.argmin(away)]]
-    raise NonConvex(
+    raise GeometryError(
         at.mean(axis=0),
         "a block is not convex at an opening, a region or a corner of the outline; "
         'set domain.non_convex = "cut" to cut it into convex parts',

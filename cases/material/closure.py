@@ -77,10 +77,10 @@ def _peak(pulse: Pulse, duration: float) -> float:
 def _stress_of(pulse: Any, scene: AnyScene) -> float:
     """Return the stress in rock by a pulse of one: itself, that of a velocity by the impedance, of
     a force over the least spacing of joints; on a pillar's start at the edges of the section."""
-    if scene.is_column and pulse.is_motion:
-        p = calibrate(scene).at_start
-        return sqrt((p.intact_modulus or p.modulus) * p.density)
     if scene.is_column:
+        if pulse.is_motion:
+            p = calibrate(scene).at_start
+            return sqrt((p.intact_modulus or p.modulus) * p.density)
         lever = sum(map(abs, pulse.at)) + (pulse.arm or 0.0)
         acts = 2 if pulse.quantity == "incident-stress" else 1
         return acts * (1 + 6 * lever / scene.pillar.side)

@@ -66,10 +66,6 @@ class RockShare(NamedTuple):
     direction: np.ndarray
     left_over: float
 
-    def excess(self, at: int) -> np.ndarray:
-        """Return the excess of joints of a direction [2], m/Pa; of none (-1) zero."""
-        return self.compliance[at] * self.apart[at] if at >= 0 else np.zeros(2)
-
     def parallel_to(self, normal: np.ndarray) -> int:
         """Return which direction a unit normal [d] is that of, -1 for none."""
         across = self.normals - np.outer(self.normals @ normal, normal)
@@ -94,7 +90,8 @@ def rigid_joints(
     for row, (k, *pair) in zip(excess, kinds, strict=True):
         for one in (shares[region] for region in pair):
             at = one.direction[k] if pair[0] == pair[1] else one.parallel_to(sets[k].normal)
-            row += one.excess(at) / 2
+            if at >= 0:
+                row += one.compliance[at] * one.apart[at] / 2
     real = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
     own = np.array([*real, *([(np.inf, np.inf)] * len(further))], dtype=float).reshape(-1, 2)
     with np.errstate(divide="ignore"):

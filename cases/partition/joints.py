@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from jointwave.cases.geometry.sets import PlaneSet
-from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, corners_of, polygon_solid
+from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, polygon_solid
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import REST, IntactRock, Region, RockMass
 
@@ -78,10 +78,9 @@ def strata(regions: Sequence[Region]) -> list[Region]:
 
 def bounded(regions: Sequence[Region]) -> list[Solid | HalfSpace]:
     """Return what bounds each region."""
-    found: list[Solid | HalfSpace] = []
-    for one in regions:
-        if one.outline is not None:
-            found.append(polygon_solid(corners_of(shapely.Polygon(one.outline))))
-        else:
-            found.append(HalfSpace(one.normal, np.array(one.through)))
-    return found
+    return [
+        HalfSpace(one.normal, np.array(one.through))
+        if one.outline is None
+        else polygon_solid(shapely.Polygon(one.outline))
+        for one in regions
+    ]

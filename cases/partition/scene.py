@@ -21,7 +21,7 @@ from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import Region, RockMass
-from jointwave.cases.size import LIMIT, memory, spoken
+from jointwave.cases.size import excess
 
 #: Default least width of a block over the smallest spacing, or the size of the domain without one.
 THIN = 1e-2
@@ -91,21 +91,15 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
     Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
     periodic sides do not fit each other, or the blocks would take more memory than a run may.
     """
-    size, limit = partition_bytes(scene, further), memory()
-    if size > limit:
+    size = partition_bytes(scene, further)
+    if why := excess(size):
         spaced = [(one.spacing, i) for i, one in enumerate(scene.joint_sets) if one.spacing]
         spacing, index = min(spaced, default=(None, 0))
         key = f"joint_sets[{index}].spacing"
         if further:
             key, spacing = "numerics.dem.block", scene.numerics.dem.block
-        raise SceneError(
-            scene.where,
-            key,
-            spacing,
-            f"gives about {size / OF_BLOCK[scene.domain.dimension]:,.0f} blocks, which would need "
-            f"about {spoken(size)} of memory;  {spoken(limit)} available (set {LIMIT} to change "
-            "it, in GB)",
-        )
+        gives = f"gives about {size / OF_BLOCK[scene.domain.dimension]:,.0f} blocks, which"
+        raise SceneError(scene.where, key, spacing, f"{gives} {why}")
     try:
         found = blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
         across_periodic(scene, found)  # whether its sides fit each other

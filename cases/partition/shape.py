@@ -125,11 +125,11 @@ def shape_of(domain: Domain) -> Shape:
         hull, outer, bays = box(low, high), _box(low, high), list[Solid]()
     else:
         whole = _polygon(domain.corners, "domain.outline")
-        hull, outer = polygon(corners_of(whole.convex_hull)), polygon_solid(corners_of(whole))
+        hull, outer = polygon(corners_of(whole.convex_hull)), polygon_solid(whole)
         left = whole.convex_hull - whole
         least = TOLERANCE * np.hypot(*np.ptp(np.reshape(left.bounds, (2, 2)), axis=0)) ** 2
         parts = (one for one in shapely.get_parts(left) if one.area > least)  # but round-off
-        bays = [polygon_solid(corners_of(one)) for one in parts]
+        bays = [polygon_solid(one) for one in parts]
     found = Shape(hull, outer.faces(), [(bay, 0) for bay in bays], 0.0)
     found = replace(found, tolerance=TOLERANCE * found.size)
     if domain.given is not None and domain.dimension == 3:
@@ -167,7 +167,7 @@ def _openings(domain: Domain) -> Iterator[tuple[str, Solid]]:
     for k, corners in enumerate(domain.openings if in_space else domain.holes):
         key = f"domain.openings[{k}]"
         if not in_space:
-            yield key, polygon_solid(corners_of(_polygon(corners, key)))
+            yield key, polygon_solid(_polygon(corners, key))
         elif len(corners) != 2 or not np.ptp(corners, axis=0).all():
             raise GeometryError(None, "must be two opposite corners of a box", key)
         else:

@@ -100,8 +100,8 @@ class SoftLayer(JointLaw):
 
     def under(self, joints: JointLaw) -> "SoftLayer":
         """Return the layer with missing keys taken from [joints], except its K_n."""
-        absent = [key for key in JointLaw.model_fields if getattr(self, key) is None]
-        absent = [key for key in absent if key != "normal_stiffness"]
+        keys = JointLaw.model_fields.keys() - {"normal_stiffness"}
+        absent = [key for key in keys if getattr(self, key) is None]
         return self.model_copy(update={key: getattr(joints, key) for key in absent})
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -229,14 +229,13 @@ def _of_starts(scene: RockMass) -> Iterator[str]:
 
 def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> float:
     """Return when a wave or load is first felt at a place in intact rock, s."""
-    if pulse.kind in ("P", "S"):
-        lateness = plane_wave(scene, cast("Wave", pulse)).lateness(place[None])[0]
+    if isinstance(pulse, Wave):
+        return onset(pulse) + float(plane_wave(scene, pulse).lateness(place[None])[0])
+    if pulse.at is None:
+        away = distance(place, shape_of(scene.domain).faces_of(pulse.side, pulse.opening))
     else:
-        load = cast("PlaneLoad", pulse)
-        faces = shape_of(scene.domain).faces_of(load.side, load.opening) if load.at is None else []
-        away = distance(place, faces) if load.at is None else np.linalg.norm(place - load.at)
-        lateness = away / _fastest(scene)
-    return onset(pulse) + float(lateness)
+        away = float(np.linalg.norm(place - pulse.at))
+    return onset(pulse) + away / _fastest(scene)
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:

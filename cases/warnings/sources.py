@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from jointwave.cases.histories import Gabor, Ricker, Sine, periodic
-from jointwave.cases.loads import LEAST_BLOCKS, frequency_of, highest_frequency
+from jointwave.cases.histories import Gabor, Ricker
+from jointwave.cases.loads import LEAST_BLOCKS, frequency_of, highest_frequency, history_of
 from jointwave.cases.material.contact_points import lever
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
@@ -165,11 +165,8 @@ def onset(pulse: Pulse) -> float:
 
 def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
     """Return a pulse with a gradual onset; None for others."""
-    if pulse.shape not in ("ricker", "gabor") or pulse.period is None:
-        return None
-    found = periodic(pulse.shape, 1.0, pulse.period, pulse.cycles)
-    assert not isinstance(found, Sine)
-    return found
+    found = history_of(pulse, 1.0)
+    return found if isinstance(found, Ricker | Gabor) else None
 
 
 def _of_lever(table: str, joints: Joints) -> Iterator[str]:
