@@ -23,15 +23,10 @@ SMALL = 10_000_000  # bytes: smaller files are always read
 def read_bytes(path: Path, largest: int, times: int) -> bytes:
     """Return the content of a file of at most `largest` bytes.
 
-    times : bytes of memory that each of the file would take. Raises ValueError, in one phrase. Only
-    regular files are opened: a pipe would block.
+    times : bytes of memory that each of the file would take. Raises ValueError, in one phrase.
     """
+    size = size_of(path)
     try:
-        if path.is_dir():
-            raise ValueError("is a directory, must be a file")
-        if path.exists() and not path.is_file():
-            raise ValueError("is not a regular file")
-        size = path.stat().st_size
         if size <= largest:
             if times * size > SMALL and (why := excess(times * size)):
                 raise ValueError(why)
@@ -42,6 +37,19 @@ def read_bytes(path: Path, largest: int, times: int) -> bytes:
     except OSError as error:
         raise ValueError(f"cannot be read: {error.strerror}") from None
     raise ValueError(f"is too large: at most {largest / 1e6:g} MB")
+
+
+def size_of(path: Path) -> int:
+    """Return the bytes of a regular file, as a pipe would block; raises ValueError, in one phrase,
+    for anything else."""
+    try:
+        if path.is_dir():
+            raise ValueError("is a directory, must be a file")
+        if path.exists() and not path.is_file():
+            raise ValueError("is not a regular file")
+        return path.stat().st_size
+    except OSError as error:
+        raise ValueError(f"cannot be read: {error.strerror}") from None
 
 
 def read_text(path: Path, largest: int, times: int = TEXT) -> str:
@@ -78,8 +86,8 @@ def parse_toml(text: str) -> dict[str, Any]:
     return tomllib.loads(text)
 
 
-def beside(folder: str | Path, file: str, anywhere: bool = False) -> Path:
-    """Return the path of a file that a scene in `folder` names.
+def beside(folder: str | Path, file: str, anywhere: bool) -> Path:
+    """Return the path of a regular file that a scene in `folder` names.
 
     It lies in that folder or below, with links resolved, unless it may be `anywhere` (named by the
     user). Raises ValueError, in one phrase.
@@ -91,6 +99,7 @@ def beside(folder: str | Path, file: str, anywhere: bool = False) -> Path:
         raise ValueError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not inside and not anywhere:
         raise ValueError("is outside the scene's folder, which only --set may name")
+    size_of(path)
     return path
 
 

@@ -203,13 +203,14 @@ class Step(LoadHistory):
 class Recorded(LoadHistory):
     """A piecewise linear history, zero outside its samples: a record, or a triangle.
 
-    `stress` is [n] Pa at `time` [n] s. Its running integral is exact, so a step of any length
-    takes the true mean of the history and nothing is lost to undersampling. Its rate at a sample is
-    that of the line to the left.
+    `stress` is [n] Pa at `time` [n] s; `timed` says whether a file gives the unit of its times. The
+    running integral is exact, so a step of any length takes the true mean of the history and
+    nothing is lost to undersampling. The rate at a sample is that of the line to the left.
     """
 
     time: np.ndarray
     stress: np.ndarray
+    timed: bool = True
 
     def value(self, t):
         return np.interp(np.asarray(t, dtype=float), self.time, self.stress, left=0.0, right=0.0)

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import printable
-from jointwave.cases.files import beside, is_number, read_bytes
+from jointwave.cases.files import is_number, read_bytes
 from jointwave.cases.histories import Recorded
 from jointwave.cases.seismogram import FORMATS, format_of, read_traces
 from jointwave.cases.units import KNOWN, TIME, split_unit, units_of
@@ -60,16 +60,12 @@ class Columns(NamedTuple):
 Where = Callable[[int], str]  #: says where in a file a sample is
 
 
-def read_history(
-    folder: str | Path, file: str, quantity: str, anywhere: bool = False, in_space: bool = False
-) -> tuple[Recorded, bool]:
-    """Return the history of a load, in SI by its quantity, in the plane or in space, and whether
-    the file gives the unit of its times.
+def read_history(path: Path, quantity: str, in_space: bool = False) -> Recorded:
+    """Return the history of a load in a file, in SI by its quantity, in the plane or in space.
 
-    file : relative to `folder`; anywhere : whether it may lie outside. Raises ValueError, in one
-    line, when there is nothing to read or it is not a history.
+    Raises ValueError, in one line, when there is nothing to read or it is not a history.
     """
-    time, rest = read_columns(beside(folder, file, anywhere), gaps=False)
+    time, rest = read_columns(path, gaps=False)
     if len(rest) != 1:
         names = _listed([one.name for one in (time, *rest)])
         raise ValueError(f"must hold two columns, time and load, not {1 + len(rest)}: {names}")
@@ -79,7 +75,7 @@ def read_history(
     if load.unit in DIMENSIONLESS:
         load = load._replace(unit="")
     sign = -1.0 if load.name.startswith("-") else 1.0
-    return Recorded(seconds, sign * load.si(units_of(quantity, in_space))), bool(time.unit)
+    return Recorded(seconds, sign * load.si(units_of(quantity, in_space)), bool(time.unit))
 
 
 def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool = True) -> Columns:

@@ -143,9 +143,9 @@ MISTAKES = {
         "expect.dem ~ dem = 0.002 -> expect.dem ~ dem": "'a ~ b'",
         # the elements
         "numerics.continuum.cell = 'simplex'; numerics.continuum.order = 3": "1 or 2 ... 'simplex'",
-        "numerics.continuum.mesh = 'gone.msh'": "no such file",
+        "numerics.continuum.mesh = 'gone.msh'": "No such file",
         "numerics.continuum.mesh = ''": "must be a file",
-        "numerics.continuum.mesh = 'pipe'": "must be a file",
+        "numerics.continuum.mesh = 'pipe'": "regular file",
         "soft_layers[0].thickness = 0.5": "less than pillar.block = 0.5",
         "no soft_layers[0].spacing_stiffness; soft_layers[0].thickness = 0.1": "needs a spacing",
     },

@@ -230,7 +230,7 @@ BOMBS = {
     "curves as CSV": lambda p: read_columns(lines(p / "a.csv", "0,0\n" * 5_000_000)),
     "curves in one line": lambda p: read_columns(lines(p / "a.csv", "0," * 1_500_000)),
     "a hollow CSV": lambda p: read_columns(hollow(p / "a.csv", b"0,0\n", 20_000_000)),
-    "a load": lambda p: read_history(p, lines(p / "a.csv", "0,0\n" * 5_000_000).name, "stress"),
+    "a load": lambda p: read_history(lines(p / "a.csv", "0,0\n" * 5_000_000), "stress"),
     "a row": lambda p: read_rows(hollow(p / "a.json", b"{")),
     "a row of lists": lambda p: read_rows(lines(p / "a.json", "[" + "[]," * 2_000_000 + "0]")),
     "a row of depth": lambda p: read_rows(lines(p / "a.json", "[" * 500_000)),

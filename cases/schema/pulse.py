@@ -21,7 +21,7 @@ from jointwave.cases.schema.values import (
     check_keys,
     contradiction,
     dimension,
-    folder_of,
+    named_file,
 )
 
 if TYPE_CHECKING:
@@ -72,7 +72,6 @@ class Pulse(Table):
 
     file_key: ClassVar[str] = "load.file"
     _history: "Recorded | None" = PrivateAttr(default=None)
-    _timed: bool = PrivateAttr(default=True)
 
     @model_validator(mode="after")
     def _keys_of_shape(self) -> "Pulse":
@@ -82,13 +81,11 @@ class Pulse(Table):
     @model_validator(mode="after")
     def _read_history(self, info: ValidationInfo) -> "Pulse":
         if self.file is not None:
-            from jointwave.cases.records import read_history  # with numpy
+            from jointwave.cases.records import read_history  # slow to import
 
-            folder, anywhere = folder_of(info, self.file_key)
+            path = named_file(info, self.file_key, self.file)
             try:
-                in_space = dimension(info) == 3
-                found = read_history(folder, self.file, self.quantity, anywhere, in_space)
-                self._history, self._timed = found
+                self._history = read_history(path, self.quantity, dimension(info) == 3)
             except ValueError as error:
                 raise contradiction(".file", self.file, str(error)) from None
         return self
@@ -97,11 +94,6 @@ class Pulse(Table):
     def history(self) -> "Recorded | None":
         """The recorded history of shape "table", else None."""
         return self._history
-
-    @property
-    def timed(self) -> bool:
-        """Whether the file of a recorded history gives the unit of its times."""
-        return self._timed
 
     @property
     def is_motion(self) -> bool:

@@ -124,26 +124,15 @@ def check_dimension(
     return in_space
 
 
-def folder_of(info: ValidationInfo, key: str) -> tuple[Path, bool]:
-    """Return the folder of the scene, and whether a file that a key names may lie elsewhere: where
-    the user gave this key, or a table that holds it, beside the scene."""
+def named_file(info: ValidationInfo, key: str, name: str) -> Path:
+    """Return the path of a file that a key names, relative to the scene's folder. It may lie
+    elsewhere where the user gave this key, or a table that holds it, beside the scene."""
     context = info.context or {}
     asked = any(f"{key}.".startswith(f"{given}.") for given in context.get("asked", ()))
-    return Path(context.get("folder", ".")), asked
-
-
-def named_file(info: ValidationInfo, key: str, name: str) -> Path:
-    """Return the path of the file that a key names, relative to the scene's folder."""
-    folder, anywhere = folder_of(info, key)
     try:
-        path = beside(folder, name, anywhere)
-        if not path.is_file():
-            raise ValueError("must be a file" if path.exists() else "cannot be read: no such file")
-    except OSError as error:
-        raise contradiction(key, name, f"cannot be read: {error.strerror}") from None
+        return beside(context.get("folder", "."), name, asked)
     except ValueError as error:
-        raise contradiction(key, name, str(error)) from None
-    return path
+        raise contradiction(f".{key.rpartition('.')[2]}", name, str(error)) from None
 
 
 def check_keys(table: Table, by: str, known: Mapping[str, tuple[set[str], set[str]]]) -> None:

@@ -118,7 +118,7 @@ def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterato
     peak = float(history.time[np.abs(history.stress).argmax()])
     late = peak > end
     slow = STATIC < crossings < 1e3 * STATIC
-    if not pulse.timed and (slow or look_like_milliseconds(history.time, history.stress, end)):
+    if not history.timed and (slow or look_like_milliseconds(history.time, history.stress, end)):
         why = (
             f"the scene ends at {end:g} s"
             if late

@@ -179,7 +179,7 @@ def test_recorded_history_scaled_by_amplitude(tmp_path, scene_with):
     blast = tmp_path / "blast.csv"
     for text in ("# a blast\ntime (s),stress (Pa)\n0,0\n1e-3,2e6\n4e-3,0\n", "\ufeff0,7\n1,8\n"):
         blast.write_text(text, encoding="utf-8")
-        history, _ = read_history(tmp_path, "blast.csv", "stress")
+        history = read_history(tmp_path / "blast.csv", "stress")
         assert history.stress.tolist() == ([7, 8] if "7" in text else [0, 2e6, 0])
     blast.write_text("0,0\n0.001,2e6\n0.004,0\n")
     load = load_history(scene_with(load={"shape": "table", "amplitude": 0.5, "file": str(blast)}))

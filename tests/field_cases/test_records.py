@@ -152,8 +152,8 @@ def test_the_rate_in_place_of_the_interval_is_refused(tmp_path, pillar_with):
 def test_a_sac_file_that_agrees_with_itself_is_read(interval, header, tmp_path):
     """Also of an ultrasonic record: ObsPy rounds to a microsecond, 0.1 us to zero, 3.2 us to 3."""
     write_sac(tmp_path / "a", SAMPLES, interval, **header)
-    load, timed = read_history(tmp_path, "a", "stress")
-    assert timed and load.time == pytest.approx(interval * np.arange(5), rel=1e-6)
+    load = read_history(tmp_path / "a", "stress")
+    assert load.timed and load.time == pytest.approx(interval * np.arange(5), rel=1e-6)
     assert load.stress.tolist() == SAMPLES
 
 
@@ -258,14 +258,13 @@ def test_times_without_a_unit_that_look_like_milliseconds_warn_both_ways(
 
 def test_a_load_has_the_unit_of_its_quantity(tmp_path):
     (tmp_path / "a").write_text("t [ms];a [g]\n0;0\n10;0,5\n")
-    load, timed = read_history(tmp_path, "a", "acceleration")
-    assert (
-        timed and load.time.tolist() == [0.0, 0.01] and load.stress.tolist() == [0, 0.5 * 9.80665]
-    )
+    load = read_history(tmp_path / "a", "acceleration")
+    assert load.timed and load.time.tolist() == [0.0, 0.01]
+    assert load.stress.tolist() == [0, 0.5 * 9.80665]
     with pytest.raises(ValueError, match=r"unit of a = 'g': must be m/s, cm/s"):
-        read_history(tmp_path, "a", "velocity")
+        read_history(tmp_path / "a", "velocity")
     (tmp_path / "a").write_text("t [ms];a [counts]\n0;0\n10;5\n")
-    assert read_history(tmp_path, "a", "velocity")[0].stress.tolist() == [0.0, 5.0]
+    assert read_history(tmp_path / "a", "velocity").stress.tolist() == [0.0, 5.0]
 
 
 def test_a_force_is_in_newtons_in_space_and_per_metre_in_the_plane(tmp_path, monkeypatch):
@@ -333,4 +332,4 @@ def test_a_wave_and_a_base_of_a_rock_mass_are_read_in_their_units(tmp_path, monk
     assert one.history.time.tolist() == other.history.time.tolist() == [0.0, 0.005, 0.01]
     assert one.history.stress.tolist() == [0.0, 0.002, 0.0]
     assert other.history.stress.tolist() == [0.0, 0.1 * 9.80665, 0.0]
-    assert one.timed and other.timed
+    assert one.history.timed and other.history.timed

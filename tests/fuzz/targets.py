@@ -98,7 +98,7 @@ def load(data, folder):
     """A load's file."""
     written(folder, "load.csv", data)
     try:
-        history, _ = read_history(folder, "load.csv", "stress")
+        history = read_history(folder / "load.csv", "stress")
     except ValueError as error:
         check(str(error))
         return "refused"
