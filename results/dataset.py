@@ -15,16 +15,7 @@ from jointwave.results.labels import AXES, label
 from jointwave.results.stress import stress_components
 
 #: Terms of an energy ledger.
-TERMS = (
-    "kinetic",
-    "elastic",
-    "viscous",
-    "friction",
-    "fracture",
-    "boundary",
-    "gravity",
-    "work",
-)
+TERMS = ("kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work")
 
 OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
 #: The dimension of the components of each quantity that may have several, and their names.

@@ -11,13 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from jointwave.compare.misfit.metrics import (
-    Worst,
-    pairings,
-    shared_waveforms,
-    static_state,
-    worst,
-)
+from jointwave.compare.misfit.metrics import Worst, pairings, shared_waveforms, static_state, worst
 from jointwave.compare.misfit.places import Place, shown
 from jointwave.compare.misfit.weight import FAINT
 from jointwave.results.labels import PEAKS, QUANTITIES, UNITS

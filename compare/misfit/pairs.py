@@ -12,12 +12,7 @@ import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import label_of, solver, solvers
-from jointwave.compare.misfit.alignment import (
-    AlignedCurve,
-    distance_at,
-    motions,
-    static_level,
-)
+from jointwave.compare.misfit.alignment import AlignedCurve, distance_at, motions, static_level
 from jointwave.compare.misfit.metrics import Distance, distance, motion, pairings, rms
 from jointwave.compare.misfit.places import Place, shown, waveforms
 from jointwave.compare.misfit.ranking import kind_of

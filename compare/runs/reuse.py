@@ -18,12 +18,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs import timings
-from jointwave.compare.runs.checkpoint.signature import (
-    PROCESSES,
-    Signature,
-    differences,
-    signature,
-)
+from jointwave.compare.runs.checkpoint.signature import PROCESSES, Signature, differences, signature
 from jointwave.compare.runs.jobs import result_path
 from jointwave.compare.runs.output import write_dataset
 from jointwave.results.dataset import scene_hash

@@ -39,11 +39,7 @@ class Run(NamedTuple):
 
 
 def runs_of(
-    names: Iterable[str],
-    scene: AnyScene,
-    stored: ResultFolder,
-    suffix: str = "",
-    point: str = "",
+    names: Iterable[str], scene: AnyScene, stored: ResultFolder, suffix: str = "", point: str = ""
 ) -> list[Run]:
     """Return the runs of `ResultFolder.solve`, of the solvers that apply."""
     able = [name for name in names if applies(name, scene)]
@@ -86,9 +82,7 @@ def forecast(run: Run) -> Row:
 
 
 def forecasts(
-    wanted: Sequence[Run],
-    progress: Progress = lambda fraction: None,
-    spare: float = 0.0,
+    wanted: Sequence[Run], progress: Progress = lambda fraction: None, spare: float = 0.0
 ) -> tuple[pd.DataFrame, dict[str, str]]:
     """Return the table of estimates of what is not read, a row each, and why points would
     fail.

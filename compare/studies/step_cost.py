@@ -47,10 +47,7 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
 
 
 def shortened(
-    scene: AnyScene,
-    name: str = DEM.name,
-    unit_steps: int = UNIT_STEPS,
-    threads: int | None = None,
+    scene: AnyScene, name: str = DEM.name, unit_steps: int = UNIT_STEPS, threads: int | None = None
 ) -> AnyScene:
     """Return the beginning of a scene, one sample or more, without snapshots; of what has no steps
     an eighth. unit_steps : steps of one block or freedom, about. threads : of rigid blocks, if not

@@ -33,10 +33,7 @@ from jointwave.results.dataset import scene_hash
 #: The studies of the report, in its order.
 REPORTED = ("free-pillar", "convergence", "uniform-chain", "one-joint")
 CANCELS = "×"
-ERRORS = {
-    "numerical": "numerical error (own model)",
-    "total": "numerical + modelling error",
-}
+ERRORS = {"numerical": "numerical error (own model)", "total": "numerical + modelling error"}
 COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
 MARKERS = "os^vDPX*<>hpd8H"
 LEGEND = (
