@@ -1,6 +1,6 @@
 """Nested tuples and lists of arrays, with None for absent parts: models, states and samples."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -17,17 +17,12 @@ def arrays(parts: Any) -> Iterator[np.ndarray]:
             yield from arrays(part)
 
 
-def changed(parts: Any, change: Callable[[np.ndarray], np.ndarray]) -> Any:
-    """Return nested tuples with `change` applied to every array."""
-    if isinstance(parts, tuple):
-        found = [changed(part, change) for part in parts]
-        return type(parts)(*found) if hasattr(parts, "_fields") else tuple(found)
-    return change(parts) if isinstance(parts, np.ndarray) else parts
-
-
 def copied(parts: Any) -> Any:
     """Return nested tuples with copies of all arrays."""
-    return changed(parts, np.copy)
+    if isinstance(parts, tuple):
+        found = map(copied, parts)
+        return type(parts)(*found) if hasattr(parts, "_fields") else tuple(found)
+    return np.copy(parts) if isinstance(parts, np.ndarray) else parts
 
 
 def fill(parts: Any, values: Any) -> None:

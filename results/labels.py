@@ -1,5 +1,7 @@
 """Names and units of every variable and coordinate of a result, for labels of plots."""
 
+import re
+
 #: Dimensions of receivers, and the coordinates with their positions; z in space.
 RECEIVERS = {
     "stress_y": ("stress_y",),
@@ -27,22 +29,15 @@ LABELS = {
     "velocity_y": ("y of the point", "m"),
     "joint_y": ("y of the joint", "m"),
     "point": ("number of the point", ""),
-    "point_x": ("x of the point", "m"),
-    "point_y": ("y of the point", "m"),
-    "point_z": ("z of the point", "m"),
     "joint_point": ("number of the point of a joint", ""),
-    "joint_point_x": ("x of the point of a joint", "m"),
-    "joint_point_y": ("y of the point of a joint", "m"),
-    "joint_point_z": ("z of the point of a joint", "m"),
+    **{f"point_{x}": (f"{x} of the point", "m") for x in AXES},
+    **{f"joint_point_{x}": (f"{x} of the point of a joint", "m") for x in AXES},
     "stress_component": ("component of the stress", ""),
     "joint_axis": ("normal or shear", ""),
     "slip_axis": ("direction of the slip", ""),
     "traction": ("traction of the joint, compression positive", "Pa"),
     "gap": ("opening of the joint, positive when open", "m"),
     "slip": ("slip of the joint", "m"),
-    "traction_error": ("bound of the root-mean-square error of the traction", "Pa"),
-    "gap_error": ("bound of the root-mean-square error of the opening", "m"),
-    "slip_error": ("bound of the root-mean-square error of the slip", "m"),
     "axis": ("direction of the motion", ""),
     "across": ("direction of the shear stress", ""),
     "term": ("term of the energy ledger", ""),
@@ -51,11 +46,6 @@ LABELS = {
     "velocity": ("velocity", "m/s"),
     "displacement": ("displacement", "m"),
     "rotation": ("rotation", "rad"),
-    "stress_error": ("bound of the root-mean-square error of the stress", "Pa"),
-    "shear_error": ("bound of the root-mean-square error of the shear stress", "Pa"),
-    "velocity_error": ("bound of the root-mean-square error of the velocity", "m/s"),
-    "displacement_error": ("bound of the root-mean-square error of the displacement", "m"),
-    "rotation_error": ("bound of the root-mean-square error of the rotation", "rad"),
     "energy": ("energy", "J"),
     "break_time": ("time at which the joint broke", "s"),
     "field_time": ("time of the snapshot", "s"),
@@ -72,6 +62,10 @@ LABELS = {
 
 
 def label(name: str) -> dict[str, str]:
-    """Return the attributes `long_name` and, for a physical quantity, `units` of a variable."""
-    long_name, unit = LABELS[name]
+    """Return the attributes `long_name` and, for a physical quantity, `units` of a variable, or of
+    NAME_error, the bound of its error."""
+    long_name, unit = LABELS[name.removesuffix("_error")]
+    if name.endswith("_error"):
+        what = re.split(",| of | on ", long_name)[0]  # "shear stress" on the far side
+        long_name = f"bound of the root-mean-square error of the {what}"
     return {"long_name": long_name} | ({"units": unit} if unit else {})

@@ -24,6 +24,7 @@ DIMENSIONS = {
     "velocity": ("field_time", "node", "component"),
     "stress": ("field_time", "cell", "stress_component"),
 }
+OVER_TIME = tuple(name for name, dims in DIMENSIONS.items() if dims[0] == "field_time")
 
 
 class Snapshots(NamedTuple):
@@ -50,13 +51,8 @@ class Snapshots(NamedTuple):
 
     def since(self, first: int) -> Snapshots:
         """Return the snapshots without those before the `first`."""
-        stress = None if self.stress is None else self.stress[first:]
-        return self._replace(
-            time=self.time[first:],
-            displacement=self.displacement[first:],
-            velocity=self.velocity[first:],
-            stress=stress,
-        )
+        over_time = {name: getattr(self, name) for name in ("time", *OVER_TIME)}
+        return self._replace(**{k: v[first:] for k, v in over_time.items() if v is not None})
 
 
 class SnapshotRecorder:
@@ -95,16 +91,9 @@ def snapshots(
     stress: np.ndarray | None = None,
 ) -> Snapshots:
     """Return snapshots from points and vectors [..., 1 to 3]: along y, along x and y, or all."""
-    return Snapshots(
-        time,
-        in_space(points),
-        kind,
-        np.asarray(cells, dtype=np.int32),
-        np.asarray(block, dtype=np.int32),
-        in_space(displacement),
-        in_space(velocity),
-        stress,
-    )
+    nodes, of_cells = (np.asarray(one, dtype=np.int32) for one in (cells, block))
+    x, moved, moving = map(in_space, (points, displacement, velocity))
+    return Snapshots(time, x, kind, nodes, of_cells, moved, moving, stress)
 
 
 def in_space(values: np.ndarray) -> np.ndarray:
@@ -119,12 +108,8 @@ def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
     fields, most = scene.record.fields, LARGEST_VARIABLE // (3 * 8 * nodes)
     count = int(scene.time.duration / scene.interval + 1e-9) // (samples_between(scene) or 1) + 1
     if count > most:
-        raise SceneError(
-            scene.where,
-            "record.fields",
-            fields,
-            f"gives {count:,} snapshots of {nodes:,} nodes; at most {most:,} fit a file",
-        )
+        allowed = f"gives {count:,} snapshots of {nodes:,} nodes; at most {most:,} fit a file"
+        raise SceneError(scene.where, "record.fields", fields, allowed)
 
 
 def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
@@ -134,10 +119,8 @@ def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
         for name, dimensions in DIMENSIONS.items()
         if (values := getattr(s, name)) is not None
     }
-    coords: dict[str, Any] = {
-        "field_time": ("field_time", s.time),
-        "component": ("component", list("xyz")),
-    }
+    coords: dict[str, Any] = {"field_time": ("field_time", s.time)}
+    coords["component"] = "component", list("xyz")
     if s.stress is not None and s.stress.ndim == 3:
         names = list(stress_components(2 if s.stress.shape[2] == 3 else 3))
         coords["stress_component"] = ("stress_component", names)
@@ -162,9 +145,6 @@ def snapshots_of(result: xr.Dataset) -> Snapshots | None:
     """Return the snapshots of a result; None if it has none."""
     if "field_cells" not in result:
         return None
-    names = [name for name in Snapshots._fields if name != "kind"]
-    arrays: dict[str, Any] = {
-        name: result[f"field_{name}"].values if f"field_{name}" in result else None
-        for name in names
-    }
-    return Snapshots(kind=result["field_cells"].attrs["kind"], **arrays)
+    held = (result.get(f"field_{name}") for name in Snapshots._fields)
+    arrays: Any = [None if one is None else one.values for one in held]
+    return Snapshots(*arrays)._replace(kind=result["field_cells"].attrs["kind"])

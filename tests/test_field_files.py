@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from jointwave import dem
-from jointwave.compare.runs.field_files import write_pvd
+from jointwave.compare.runs.output import write_pvd
 from jointwave.results.snapshots import Snapshots, snapshots, snapshots_of
 
 SPALL = {

@@ -14,14 +14,8 @@ from jointwave.compare.figures.receivers import curve_table
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison, Row
 from jointwave.compare.misfit.places import Place, places_of
-from jointwave.compare.readings import (
-    arias,
-    ppv,
-    quality_factor,
-    response_spectrum,
-    wave_speed,
-)
-from jointwave.compare.readings.attenuation import waveforms
+from jointwave.compare.readings.attenuation import quality_factor, wave_speed, waveforms
+from jointwave.compare.readings.ground_motion import arias, ppv, response_spectrum
 from jointwave.compare.readings.recordings import dataset_of, sampling
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_csv

@@ -9,7 +9,7 @@ import xarray as xr
 from jointwave.cases.errors import SceneError
 from jointwave.cases.units import UNITS
 from jointwave.compare.misfit.metrics import delay, motion
-from jointwave.compare.readings.recordings import Recording, recording, sampling
+from jointwave.compare.readings.recordings import Recording, recording, sampling, variables
 from jointwave.results.labels import RECEIVERS
 
 WAYS = "way_1", "way_2", "way_3"  # along the axes of receivers, from the first one
@@ -131,16 +131,6 @@ def quality_factor(
         "quality": (quality, "apparent quality factor", "1"),
     }
     return xr.Dataset(variables("frequency", named), {"frequency": frequency[heard]})
-
-
-def variables(
-    dims: str | tuple[str, ...], named: dict[str, tuple[np.ndarray, str, str]]
-) -> dict[str, xr.Variable]:
-    """Return variables by name, of values, what they are in words, and their unit."""
-    return {
-        name: xr.Variable(dims, values, {"long_name": words, "units": unit})
-        for name, (values, words, unit) in named.items()
-    }
 
 
 def known_places(row: xr.DataArray) -> np.ndarray:

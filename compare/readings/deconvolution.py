@@ -68,10 +68,8 @@ def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-
 def _column(scene: Scene) -> tuple[Bar, float]:
     """Return a scene's column and the impedance of the rock behind its start, Pa s/m."""
     p, load = calibrate(scene), scene.load
-    ends, slips = (
-        (scene.ends.start, scene.ends.end),
-        p.friction is not None or p.cohesion is not None,
-    )
+    ends = scene.ends.start, scene.ends.end
+    slips = p.friction is not None or p.cohesion is not None
     reasons = [
         (ends != ("quiet", "free"), "the ends are not quiet and free"),
         (load.is_across and scene.motion.rotation != "none", "motion.rotation is not 'none'"),

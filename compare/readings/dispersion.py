@@ -27,8 +27,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.scene_type import pillar_of
-from jointwave.compare.readings.attenuation import known_places, variables, waveforms
-from jointwave.compare.readings.recordings import Recording, sampling
+from jointwave.compare.readings.attenuation import known_places, waveforms
+from jointwave.compare.readings.recordings import Recording, sampling, variables
 from jointwave.compare.scenes import AnySource, load
 
 HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at

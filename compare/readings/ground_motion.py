@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError, require
-from jointwave.compare.readings.recordings import Recording, recording, sampling
+from jointwave.compare.readings.recordings import Recording, recording, sampling, variables
 from jointwave.results.dataset import A_RESULT
 
 GRAVITY = 9.81  # m/s2
@@ -106,19 +106,16 @@ def response_spectrum(
     if not accelerated:
         ground = np.diff(ground, prepend=ground[..., :1], append=ground[..., -1:]) / dt
     peaks = [_largest_displacement(ground, dt, 2 * pi / T, damping) for T in periods]
-    of_period = {"long_name": "period of the oscillator", "units": "s"}
-    dims = (*motion.dims[:-1], "period")
-    spectra = {"displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s2"}
-    variables = {
-        name: xr.Variable(
-            dims,
-            np.stack(peaks, axis=-1) * (2 * pi / periods) ** power,
-            {"long_name": f"spectral {name.replace('_', '-')}", "units": unit},
-        )
-        for power, (name, unit) in enumerate(spectra.items())
+    dims = (*map(str, motion.dims[:-1]), "period")
+    units = {"displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s2"}
+    largest, omega = np.stack(peaks, axis=-1), 2 * pi / periods
+    spectra = {
+        name: (largest * omega**power, f"spectral {name.replace('_', '-')}", unit)
+        for power, (name, unit) in enumerate(units.items())
     }
-    coords = {"period": ("period", periods, of_period), **motion.isel(time=0, drop=True).coords}
-    return xr.Dataset(variables, coords, {"damping": damping})
+    at = variables("period", {"period": (periods, "period of the oscillator", "s")})
+    found = xr.Dataset(variables(dims, spectra), motion.isel(time=0, drop=True).coords)
+    return found.assign_coords(at).assign_attrs(damping=damping)
 
 
 def _largest_displacement(

@@ -138,3 +138,13 @@ def sampling(of: xr.DataArray | xr.Dataset) -> float:
     """Return the time between samples, s."""
     time = of["time"].values
     return float(time[-1] - time[0]) / (len(time) - 1)
+
+
+def variables(
+    dims: str | tuple[str, ...], named: dict[str, tuple[np.ndarray, str, str]]
+) -> dict[str, xr.Variable]:
+    """Return variables by name, of values, what they are in words, and their unit."""
+    return {
+        name: xr.Variable(dims, values, {"long_name": words, "units": unit})
+        for name, (values, words, unit) in named.items()
+    }

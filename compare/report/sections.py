@@ -18,7 +18,7 @@ from jointwave.compare.figures.animation.video import write_video
 from jointwave.compare.figures.export import save
 from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.report import peers
-from jointwave.compare.runs.field_files import write_pvd
+from jointwave.compare.runs.output import write_pvd
 from jointwave.compare.scenes import find
 from jointwave.compare.studies import effects, hard_cases
 from jointwave.compare.studies.catalogue import experiment

@@ -1,8 +1,8 @@
 """Jobs of `jointwave run`, one per result, checked before any is run."""
 
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
@@ -21,16 +21,12 @@ class Job(NamedTuple):
 def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]]:
     """Return (engine, model) for each requested run; the model None means all that apply."""
     known = selection()
-    found: list[tuple[str, str | None]] = []
-    left = list(models)
-    for engine in engines:
-        mine = [m for m in models if m in known[engine]]
-        left = [m for m in left if m not in mine]
-        found += [(engine, m) for m in mine] or [(engine, None)]
-    if left:
+    chosen: dict[str, list[Any]] = {e: [m for m in models if m in known[e]] for e in engines}
+    if left := [m for m in models if m not in chain(*chosen.values())]:
         every = ", ".join(model for of in known.values() for model in of if model)
         allowed = f"must be a model of a selected --engine: {every}"
         raise SceneError("--model", left[0], None, allowed)
+    found = ((engine, m) for engine, mine in chosen.items() for m in mine or [None])
     return list(dict.fromkeys(found))
 
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from errno import EIO
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,7 @@ import xarray as xr
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number, read_json
 from jointwave.results.netcdf import MAGIC
+from jointwave.results.snapshots import Snapshots
 
 LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
@@ -159,3 +161,37 @@ def write_dataset(path: Path, result: xr.Dataset) -> Path:
     found = result.assign(texts).assign_attrs(large)
     plain = {k: {"_FillValue": None} for k, v in found.variables.items() if v.dtype.kind == "f"}
     return write(path, lambda file: found.to_netcdf(file, engine="scipy", encoding=plain))
+
+
+def write_pvd(path: Path, s: Snapshots) -> Path:
+    """Write snapshots for ParaView: NAME.pvd at `path`, and beside it NAME-fields/0000.vtu, ...,
+    one per instant, by meshio.
+
+    Points are those of the unloaded body; the filter "Warp By Vector" shows its motion. Point data:
+    displacement (m), velocity (m/s). Cell data: block, stress (Pa) where known.
+    """
+    import meshio  # slow to import
+
+    refuse_foreign(path, (b"<?xml",))
+    folder = path.with_name(f"{path.stem}-fields")
+    names = [f"{i:04d}.vtu" for i in range(len(s.time))]
+
+    def save(new: Path) -> None:
+        new.mkdir()
+        for i, name in enumerate(names):
+            cell_data: dict[str, Any] = {"block": [s.block]}
+            if s.stress is not None:
+                cell_data["stress"] = [s.stress[i]]
+            vectors = {"displacement": s.displacement[i], "velocity": s.velocity[i]}
+            meshio.Mesh(s.points, [(s.kind, s.cells)], vectors, cell_data).write(new / name)
+
+    write(folder, save)
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    collection = ElementTree.SubElement(root, "Collection")
+    for time, name in zip(s.time.tolist(), names, strict=True):
+        ElementTree.SubElement(
+            collection, "DataSet", timestep=repr(time), file=f"{folder.name}/{name}"
+        )
+    tree = ElementTree.ElementTree(root)
+    ElementTree.indent(tree)
+    return write(path, lambda file: tree.write(file, encoding="utf-8", xml_declaration=True))

@@ -14,10 +14,11 @@ from jointwave.compare.runs import timings
 from jointwave.compare.runs.checkpoint.resume import CheckpointSettings, RunCheckpointer
 from jointwave.compare.runs.checkpoint.signals import Signals
 from jointwave.compare.runs.jobs import Job
-from jointwave.compare.runs.output import write_dataset
+from jointwave.compare.runs.output import write_dataset, write_pvd
 from jointwave.compare.runs.processes import ALONE, Processes
 from jointwave.compare.runs.reuse import log_reading, signed
 from jointwave.results.dataset import energy_residual, open_ledger
+from jointwave.results.snapshots import snapshots_of
 
 T = TypeVar("T")
 STOPPED = ".stopped.nc"  # the end of the name of a partial result
@@ -127,12 +128,8 @@ def _write(
 def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
     """Write the snapshots of a result and return its facts; its checkpoints are removed."""
     has_ledger, fields = "energy" in result, list[str]()
-    if job.scene.record.fields is not None:
-        from jointwave.compare.runs.field_files import write_pvd
-        from jointwave.results.snapshots import snapshots_of
-
-        if (found := snapshots_of(result)) is not None:
-            fields.append(str(write_pvd(job.path.with_suffix(".pvd"), found)))
+    if job.scene.record.fields is not None and (found := snapshots_of(result)) is not None:
+        fields.append(str(write_pvd(job.path.with_suffix(".pvd"), found)))
     facts = {
         "variant": job.scene.name,
         "engine": job.name,

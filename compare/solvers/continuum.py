@@ -6,21 +6,19 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from jointwave.cases.run_memory import estimates
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.solvers.incident import incident, note_sides
 from jointwave.compare.solvers.record import Answer, Form, Kind, Line, Prepared, Rock, Solver
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from jointwave.cases.schema.rock_mass import RockMass
-    from jointwave.cases.schema.scene import Scene
-
 
 #: How to get what the continuum runs on.
 INSTALL = 'pip install "jointwave[continuum]" (Linux, Python 3.12), or dolfinx by apt or conda'
 
 
-def applies(scene: Scene, model: str) -> Answer:
+def applies(scene: AnyScene, model: str) -> Answer:
     """Return whether dolfinx is there and the model holds for the scene."""
     try:
         from jointwave.continuum import applies as reason_against
@@ -30,9 +28,7 @@ def applies(scene: Scene, model: str) -> Answer:
     return Answer(reason or "")
 
 
-def run(
-    scene: Scene | RockMass, progress=None, comm=None, keeper=None, *, model: str
-) -> xr.Dataset:
+def run(scene: AnyScene, progress=None, comm=None, keeper=None, *, model: str) -> xr.Dataset:
     """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
     from jointwave.continuum import simulate
 
@@ -42,7 +38,7 @@ def run(
     return found
 
 
-def prepare(scene: Scene, model: str) -> Prepared:
+def prepare(scene: AnyScene, model: str) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from jointwave.continuum.plan import plan_of
 

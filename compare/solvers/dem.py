@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from jointwave.cases.run_memory import estimates
+from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.solvers.incident import incident, note_sides
 from jointwave.compare.solvers.record import Answer, Form, Line, Prepared, Rock, Solver
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from jointwave.cases.schema.rock_mass import RockMass
-    from jointwave.cases.schema.scene import Scene
 
-
-def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Dataset:
+def run(scene: AnyScene, progress=None, comm=None, keeper=None) -> xr.Dataset:
     """Return the result of a scene; `comm` is unused, one process runs it."""
     from jointwave.dem import simulate
 
@@ -24,7 +22,7 @@ def run(scene: Scene | RockMass, progress=None, comm=None, keeper=None) -> xr.Da
     return found
 
 
-def prepare(scene: Scene | RockMass) -> Prepared:
+def prepare(scene: AnyScene) -> Prepared:
     """Return the step and the size of a run; raises SceneError as the run would."""
     from jointwave.dem import plan
 
@@ -37,9 +35,8 @@ def prepare(scene: Scene | RockMass) -> Prepared:
     return Prepared(scheme, time.steps, time.dt, found.critical, found.freedoms, size, settings)
 
 
-def applies(scene: Scene | RockMass) -> Answer:
+def applies(scene: AnyScene) -> Answer:
     """Return whether a scene has blocks that can be rigid."""
-
     if scene.rock.quality_factor is not None:
         from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from jointwave.cases.scene_type import AnyScene
+
 if TYPE_CHECKING:
     from jointwave.cases.incident import IncidentField
-    from jointwave.cases.schema.rock_mass import RockMass
-    from jointwave.cases.schema.scene import Scene
 
 
-def incident(scene: Scene | RockMass) -> IncidentField | None:
+def incident(scene: AnyScene) -> IncidentField | None:
     """Return what enters a rock mass through its quiet sides; None for a scene without waves."""
     if not scene.waves:
         return None
@@ -24,7 +24,7 @@ def incident(scene: Scene | RockMass) -> IncidentField | None:
     return field_of(scene)
 
 
-def side_warnings(scene: Scene | RockMass) -> list[str]:
+def side_warnings(scene: AnyScene) -> list[str]:
     """Return the error of the quiet sides of a rock mass that its receivers feel in a line; none
     without."""
     if not scene.waves:
@@ -35,7 +35,7 @@ def side_warnings(scene: Scene | RockMass) -> list[str]:
     return [] if found is None else [found.words]
 
 
-def note_sides(attributes: dict[str, Any], scene: Scene | RockMass) -> None:
+def note_sides(attributes: dict[str, Any], scene: AnyScene) -> None:
     """Add that line to the warnings that a result bears."""
     if lines := side_warnings(scene):
         attributes["warnings"] = json.dumps([*json.loads(attributes["warnings"]), *lines])

@@ -32,17 +32,11 @@ from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.scenes import find
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
-from jointwave.compare.studies import store
+from jointwave.compare.studies import step_cost, store
 from jointwave.compare.studies.effects_summary import summarise
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.step_cost import (
-    REPEATS,
-    cost_of_every_effect,
-    shortened,
-    step_costs,
-    with_every_effect,
-)
+from jointwave.compare.studies.step_cost import cost_of_every_effect, shortened, step_costs
 from jointwave.compare.studies.store import FAILURES, Pool, Row, Store, alone, reason_of
 from jointwave.results.dataset import scene_hash
 
@@ -156,10 +150,10 @@ def runs(points: Sequence[Point]) -> list[Run]:
             with suppress(*FAILURES):
                 one = scene if effect is None else left_out(scene, effect)
                 short = shortened(one, engine)
-                found += [Run(name, one, engine), Run(name, short, engine, 1 + REPEATS)]
+                found += [Run(name, one, engine), Run(name, short, engine, 1 + step_cost.REPEATS)]
         if engine == BLOCKS and not scene.in_space:
-            full = shortened(with_every_effect(scene))
-            whole[scene_hash(full)] = Run(name, full, BLOCKS, 1 + REPEATS)
+            full = shortened(step_cost.with_every_effect(scene))
+            whole[scene_hash(full)] = Run(name, full, BLOCKS, 1 + step_cost.REPEATS)
     return [*found, *whole.values()]
 
 

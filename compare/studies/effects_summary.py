@@ -63,9 +63,9 @@ def table(found: pd.DataFrame) -> pd.DataFrame:
 
 def _resolved(value: float, noise: float) -> float | str:
     """Return a number; in place of one that does not exceed the noise of timings, that."""
-    return (
-        value if abs(value) > noise or not isfinite(value) else f"within ±{float(f'{noise:.1g}'):g}"
-    )
+    if abs(value) > noise or not isfinite(value):
+        return value
+    return f"within ±{float(f'{noise:.1g}'):g}"
 
 
 def sentences(found: pd.DataFrame) -> list[str]:

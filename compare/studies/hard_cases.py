@@ -35,17 +35,9 @@ from jointwave.compare.misfit.metrics import misfit
 from jointwave.compare.runs.output import write_csv
 from jointwave.compare.runs.timings import solved
 from jointwave.compare.scenes import bound_of, find, shipped
-from jointwave.compare.studies import store
+from jointwave.compare.studies import hard_map, store
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.hard_map import (
-    SCENE,
-    cells_of,
-    cells_to_run,
-    columns,
-    computed,
-    draw_maps,
-)
 from jointwave.compare.studies.store import Row, Store
 from jointwave.results.dataset import energy_residual, scene_hash
 
@@ -110,7 +102,7 @@ def hard_cases() -> list[Row]:
         for scheme in engine.schemes
         if scene.is_column or scheme in ("leapfrog", "explicit")
     ]
-    short = [one for one in found if one[:2] == (SCENE, "") and one[3] != "implicit"]
+    short = [one for one in found if one[:2] == (hard_map.SCENE, "") and one[3] != "implicit"]
     ends = [(one, STABLE) for one in found]
     ends += [(one, state) for one in short for state in (REFUSED, STOPPED)]
     return [dict(zip(POINT, (*one, state), strict=True)) for one, state in ends]
@@ -187,7 +179,7 @@ def experiment(out: Path) -> Experiment:
     A point is a case or, with a `ratio`, a column of a map.
     """
     saved = Store(out / NAME, key)
-    points, told = [*columns(), *hard_cases()], partial(summarise, out)
+    points, told = [*hard_map.columns(), *hard_cases()], partial(summarise, out)
     return Experiment(TITLE, points, saved, measure, told, runs)
 
 
@@ -201,13 +193,13 @@ def key(point: Row) -> str:
 
 def measure(point: Row) -> Row:
     """Return a case after its run, or a column of a map with its cells."""
-    return computed(point) if "ratio" in point else run(point)
+    return hard_map.computed(point) if "ratio" in point else run(point)
 
 
 def runs(points: Sequence[Row]) -> list[Run]:
     """Return the runs of cases, with what they are held against, and of maps' cells; a cell above
     the critical step ends early."""
-    found = [Run("maps", *cells_to_run(one)) for one in points if "ratio" in one]
+    found = [Run("maps", *hard_map.cells_to_run(one)) for one in points if "ratio" in one]
     for row in (one for one in points if "ratio" not in one):
         with suppress(SceneError):
             scene, engine = scene_of(row), row["engine"]
@@ -221,9 +213,9 @@ def runs(points: Sequence[Row]) -> list[Run]:
 
 def summarise(out: Path, found: Sequence[Row]) -> Summary:
     """Return the summary of maps and cases; write their tables and figure into `out`."""
-    cells = cells_of([one for one in found if "ratio" in one])
+    cells = hard_map.cells_of([one for one in found if "ratio" in one])
     rows = judged([one for one in found if "ratio" not in one])
-    drawn = save(draw_maps(cells), out, NAME, TITLE)
+    drawn = save(hard_map.draw_maps(cells), out, NAME, TITLE)
     tables = {NAME: rows[[*COLUMNS]], f"{NAME}-map": cells}
     files = [write_csv(out / f"{name}.csv", table) for name, table in tables.items()]
     files.append(drawn.file("svg"))

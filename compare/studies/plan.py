@@ -20,16 +20,8 @@ from jointwave.compare.engines import ENGINES, Progress
 from jointwave.compare.misfit import ranking
 from jointwave.compare.misfit.metrics import JUDGED, misfit
 from jointwave.compare.scenes import AnySource, load
-from jointwave.compare.studies.elements import (
-    EXPLICIT,
-    Elements,
-    coarsest,
-    configured,
-    elements,
-    label,
-    plain,
-    rock,
-)
+from jointwave.compare.studies import elements as choices
+from jointwave.compare.studies.elements import Elements, configured, elements, label, plain
 from jointwave.compare.studies.measure import Reference, able, exact_reference
 from jointwave.compare.studies.store import FAILURES, reason_of
 
@@ -138,7 +130,7 @@ def plan(
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")
     made = Plan(scene, misfit, seconds, _reference(scene, found.name, {}, misfit), found.reason)
     queue: list[Elements] = []
-    for name, changes in coarsest(scene):
+    for name, changes in choices.coarsest(scene):
         try:
             queue.append(elements(scene, name, changes))
         except FAILURES as error:
@@ -238,7 +230,7 @@ def _runs(scene: AnyScene, name: str, model: dict[str, Any]) -> Iterator[Referen
     proportion to the step.
     """
     is_rigid, before = ENGINES[name].has_rigid_blocks, None
-    one = elements(scene, name, model if is_rigid else EXPLICIT | rock(scene, 2))
+    one = elements(scene, name, model if is_rigid else choices.EXPLICIT | choices.rock(scene, 2))
     one = one._replace(per_sample=2 * one.per_sample)
     while before is None or one.seconds <= LONGEST[scene.kind]:
         result = one.solve()

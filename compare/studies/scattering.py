@@ -31,16 +31,11 @@ from jointwave.compare.runs.timings import machine
 from jointwave.compare.solvers.continuum import JOINTED_ROCK
 from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.studies import store
+from jointwave.compare.studies import transmission as waves
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import Row, Store
-from jointwave.compare.studies.transmission import (
-    SCENE,
-    ParallelJoints,
-    amplitudes,
-    closed_form,
-    scene_of,
-)
+from jointwave.compare.studies.transmission import SCENE, ParallelJoints
 from jointwave.compare.text import percent
 
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
@@ -98,7 +93,7 @@ def joints_of(count: int) -> ParallelJoints:
 
 def scene_at(point: Row) -> RockMass:
     """Return the scene of a point."""
-    return scene_of(joints_of(point["joints"]), point["incidence"], point["angle"])
+    return waves.scene_of(joints_of(point["joints"]), point["incidence"], point["angle"])
 
 
 def measure(point: Row) -> Row:
@@ -110,8 +105,8 @@ def measure(point: Row) -> Row:
         cpu = process_time() - began
         if float(result.attrs.get("seconds_compile", 0.0)) <= COMPILED:
             break
-    *found, residual = amplitudes(scene, result.velocity.values)
-    exact = closed_form(joints_of(point["joints"]), point["incidence"], point["angle"])
+    *found, residual = waves.amplitudes(scene, result.velocity.values)
+    exact = waves.closed_form(joints_of(point["joints"]), point["incidence"], point["angle"])
     error = float(np.abs(found - exact).max())
     freedoms = float(result.attrs.get("degrees_of_freedom", nan))
     numbers = {"error": error, "residual": residual, "freedoms": freedoms, "cpu": cpu}
@@ -206,6 +201,6 @@ def _exact(name: str, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
     """Return the varied values and the moduli [4, values] in closed form."""
     if name == "oblique-joint":
         x: np.ndarray = np.arange(0, 88, 0.5)
-        return x, closed_form(joints_of(1), kind, x)
+        return x, waves.closed_form(joints_of(1), kind, x)
     x = np.arange(1, COUNTS[-1] + 1)
-    return x, np.array([closed_form(joints_of(int(n)), kind, AT) for n in x]).T
+    return x, np.array([waves.closed_form(joints_of(int(n)), kind, AT) for n in x]).T

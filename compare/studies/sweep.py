@@ -146,8 +146,8 @@ def compare_scene(
     if not found.rows:
         allowed = "has nothing to compare: no pair of solutions applies"
         raise SceneError(scene.where, "", None, allowed)
-    rows: Rows = []
-    for row in found.rows:
-        facts = {name: nan if x is None else x for name, x in row.facts.items()}
-        rows.append(facts | {"pair": row.solutions, "faint": str(row.faint).lower()})
-    return rows
+    return [
+        {name: nan if x is None else x for name, x in row.facts.items()}
+        | {"pair": row.solutions, "faint": str(row.faint).lower()}
+        for row in found.rows
+    ]

@@ -35,7 +35,7 @@ from jointwave.compare.exact.plane.pulse import axes_of
 from jointwave.compare.exact.plane.waves import KINDS, Kind, polarisations, slownesses_across
 from jointwave.compare.exact.rock_mass.conditions import all_parallel, beyond_linear_rock
 from jointwave.compare.exact.rock_mass.stack import stack_of
-from jointwave.compare.readings.attenuation import variables
+from jointwave.compare.readings.recordings import variables
 from jointwave.compare.scenes import AnySource, load
 
 SCENE = Path(__file__).parent / "joints.toml"

@@ -15,7 +15,7 @@ from jointwave.cases.geometry.measure import frames_of
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.read import load_tables
-from jointwave.compare.runs.field_files import write_pvd
+from jointwave.compare.runs.output import write_pvd
 from jointwave.dem.blocks.rock_mass import blocks_of as rigid_blocks
 from jointwave.dem.contacts.faces import Contacts
 from jointwave.dem.readings.receivers import (

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import strategies as st
 
 from jointwave import cases
-from jointwave.compare.studies import SHIPPED as STUDIES
+from jointwave.compare.studies.study import SHIPPED as STUDIES
 
 SCENE_FILES = sorted(Path(cases.__file__).parent.glob("*/*.toml"))
 SCENES = [path.read_text(encoding="utf-8") for path in SCENE_FILES]

@@ -76,7 +76,8 @@ def test_files_table_and_sentences_tell_of_every_row(tmp_path, monkeypatch):
     """Of the short pillar alone and coarse maps; a row that fails says so."""
     few = [case for case in CASES if title_of(case) == "short-pillar"]
     monkeypatch.setattr(hard_cases, "hard_cases", lambda: few)
-    monkeypatch.setattr(hard_cases, "columns", lambda: hard_map.columns(("dem",), 5))
+    columns = hard_map.columns(("dem",), 5)
+    monkeypatch.setattr(hard_map, "columns", lambda: columns)
     found = hard_cases.experiment(tmp_path).make()
     assert (tmp_path / "stability.csv").read_text().count("\n") == len(few) + 1
     assert (tmp_path / "stability-map.csv").read_text().count("\n") == 25 + 1

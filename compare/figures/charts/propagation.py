@@ -12,7 +12,6 @@ import pandas as pd
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare import readings
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
@@ -20,7 +19,13 @@ from jointwave.compare.figures.receivers import table_of
 from jointwave.compare.figures.style import style
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.readings.attenuation import waveforms
+from jointwave.compare.readings.attenuation import (
+    quality_factor,
+    transfer_function,
+    wave_speed,
+    waveforms,
+)
+from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
 
 LEAST = 3  # receivers of a row
 HEARD = 0.03  # of the first receiver's largest amplitude: threshold of drawn frequencies
@@ -79,7 +84,7 @@ def curves_of(comparison: Comparison) -> Curves:
         return found
     frequency = next(iter(found.values()))[TRANSFER].index.values
     with suppress(SceneError):  # no theory of this scene
-        theory = readings.dispersion_theory(scene, frequency)
+        theory = dispersion_theory(scene, frequency)
         for rock in theory.rock.values:
             speed, quality = (theory.sel(rock=rock)[n] for n in ("phase_speed", "quality"))
             curves = {SPEED: speed.to_series(), LOSS: 1 / quality.to_series()}
@@ -90,12 +95,12 @@ def curves_of(comparison: Comparison) -> Curves:
 def _measured(result: xr.Dataset, row: xr.DataArray) -> dict[str, pd.Series]:
     """Return one result's curves at the frequencies that the first receiver has; row : its
     velocities."""
-    first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(readings.transfer_function(result))
-    speed, nearest = readings.dispersion(result).phase_speed, row["distance"].diff("receiver").min()
-    apart = abs(readings.wave_speed(result)) / (2 * float(nearest))
+    first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(transfer_function(result))
+    speed, nearest = dispersion(result).phase_speed, row["distance"].diff("receiver").min()
+    apart = abs(wave_speed(result)) / (2 * float(nearest))
     speed = speed[speed.frequency.values < TOLD_APART * apart]
     heard = (first > HEARD * first.max()) & (transfer.frequency.values > 0)
-    every = transfer, speed, 1 / readings.quality_factor(result).quality
+    every = transfer, speed, 1 / quality_factor(result).quality
     found = (pd.Series(one.values, one.frequency.values) for one in every)
     series = (one.reindex(transfer.frequency.values[heard]).dropna() for one in found)
     return dict(zip(NAMES, series, strict=True))

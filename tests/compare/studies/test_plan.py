@@ -131,7 +131,7 @@ SLIPPING = {
 def test_joints_that_slip_are_not_planned_by_homogenised_rock(monkeypatch):
     """The reference is a converged run of jointed rock. Where nothing else is there, it is said."""
     leave = [one for one in coarsest(short()) if one[0] == "continuum-equivalent"]
-    monkeypatch.setattr(plans, "coarsest", lambda scene: leave)
+    monkeypatch.setattr(plans.choices, "coarsest", lambda scene: leave)
     found = plan(scene_of("beyond/slip-three-cohesions", SLIPPING), 0.02)
     assert found.finest.name == "continuum-jointed" and found.finest.settings
     assert found.chosen is None and found.misfit == np.inf and not found.is_met
