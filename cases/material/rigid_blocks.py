@@ -26,8 +26,7 @@ from jointwave.cases.material.effective_medium import (
     joints_alone,
     nearest_stiffness,
 )
-from jointwave.cases.material.rock import elastic_rock, shear_modulus
-from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus
+from jointwave.cases.material.rock import elastic_rock, wave_moduli
 from jointwave.cases.partition.joints import rocks_of, within
 from jointwave.cases.partition.lattice import by_direction
 from jointwave.cases.schema.joint import JointSet
@@ -154,23 +153,24 @@ def welds(
     start: np.ndarray,
     normal: np.ndarray,
     shift: np.ndarray,
-) -> Stiffness:
-    """Return the stiffness of contacts [c] between pairs of blocks [c, 2] that no joint set and no
-    set of cuts made: the rock on both sides in series.
+) -> np.ndarray:
+    """Return the stiffness, normal and in shear [2, c], Pa/m, of contacts between pairs of blocks
+    [c, 2] that no joint set and no set of cuts made: the rock on both sides in series.
 
     start : a place on each contact [c, d], m. normal : [c, d]. shift : by which blocks j stand
     elsewhere, across periodic sides [c, d], m. Beside another region's rock, half a block has the
     compliance of its joints along the contact, if there are some.
     """
     if not len(pairs):
-        return Stiffness(np.zeros(0), np.zeros(0))
-    shares, rocks, found = rock_shares(scene, further), rocks_of(scene), np.zeros((len(pairs), 2))
+        return np.zeros((2, 0))
+    shares, found = rock_shares(scene, further), np.zeros((len(pairs), 2))
+    moduli = [wave_moduli(one) for one in rocks_of(scene)]
     corners = cut.body.corners(cut.body.halves())
     first = np.searchsorted(corners[:, 0], np.arange(cut.count + 1))
     for c, (pair, n) in enumerate(zip(pairs, normal, strict=True)):
         regions = cut.body.region[pair]
         for side, (block, region) in enumerate(zip(pair, regions, strict=True)):
-            share, rock = shares[region], rocks[region]
+            share = shares[region]
             at = share.parallel_to(n) if regions[0] != regions[1] else -1
             if at >= 0:
                 own = corners[first[block] : first[block + 1], 1]
@@ -178,9 +178,8 @@ def welds(
                 found[c] += share.compliance[at] * thickness / 2
             else:
                 reach = abs((start[c] - side * shift[c] - cut.centroid[block]) @ n)
-                shear = shear_modulus(rock.intact_modulus, rock.intact_poisson)
-                found[c] += reach / np.array([constrained_modulus(rock), shear])
-    return Stiffness(*(1 / found).T)
+                found[c] += reach / moduli[region]
+    return (1 / found).T
 
 
 def against(scene: RockMass) -> str | None:

@@ -68,6 +68,13 @@ def shear_modulus(modulus: float, poisson: float) -> float:
     return modulus / (2 * (1 + poisson))
 
 
+def wave_moduli(rock: IntactRock) -> np.ndarray:
+    """Return the P-wave and the S-wave modulus of the rock between joints [2], Pa."""
+    E, poisson = rock.intact_modulus, rock.intact_poisson
+    constrained = E * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
+    return np.array([constrained, shear_modulus(E, poisson)])
+
+
 def joint_stiffness(equivalent: float, intact: float, spacing: float) -> float:
     """Return the joint's own K_n (Pa/m) that gives the rock mass its modulus, equation (4);
     infinite where that is the intact rock's."""

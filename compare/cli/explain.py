@@ -8,8 +8,8 @@ import numpy as np
 
 from jointwave.cases.effects import effects
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.block_summary import block_summary
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.rock_mass import block_summary
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.size import spoken

@@ -13,8 +13,8 @@ from jointwave.cases.geometry.blocks import Blocks as Cut
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.material.contact_points import CUT
 from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints, welds
-from jointwave.cases.material.rock import shear_modulus
-from jointwave.cases.material.rock_mass import Stiffness, constrained_modulus, set_time_constants
+from jointwave.cases.material.rock import wave_moduli
+from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.partition.joints import ROCK, rocks_of
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
@@ -130,9 +130,9 @@ def _columns(
 
 def _without_set(
     scene: RockMass, cut: Cut, further: list[JointSet], contacts: Contacts, alone: np.ndarray
-) -> Stiffness:
-    """Return the stiffness of some contacts (int array), of rock where no set made the cut and then
-    of walls.
+) -> np.ndarray:
+    """Return the stiffness, normal and in shear [2, n], Pa/m, of some contacts (int array), of rock
+    where no set made the cut and then of walls.
 
     A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
     rock is: half a block. A roller side is such a wall without stiffness in shear.
@@ -144,26 +144,22 @@ def _without_set(
     inner = welds(scene, cut, further, pairs[cuts], centre[cuts], normal[cuts], shift)
     block, wall = pairs[held].T
     reach = (contacts.arm[held, 0] * normal[held]).sum(axis=1)
-    moduli = np.array(
-        [
-            (constrained_modulus(one), shear_modulus(one.intact_modulus, one.intact_poisson))
-            for one in rocks_of(scene)
-        ]
-    )
+    moduli = np.array([wave_moduli(one) for one in rocks_of(scene)])
     kinds = [getattr(scene.boundaries, one) for one in contacts.walls]
     sticks = np.array([one == "fixed" for one in kinds], dtype=float)[wall - cut.count]
     k_n, k_s = moduli[cut.body.region[block]].T / reach
-    return Stiffness(np.append(inner.normal, k_n), np.append(inner.shear, k_s * sticks))
+    return np.append(inner, [k_n, k_s * sticks], axis=1)
 
 
-def columns_of_sets(scene: RockMass, joints: RigidJoints, others: Stiffness) -> Columns:
+def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) -> Columns:
     """Return the law of a scene's contacts.
 
-    joints : of the sets. others : of further contacts, in separate columns, always linear.
+    joints : of the sets. others : stiffness of further contacts [2, n], in separate columns, always
+    linear.
     """
     sets, made = scene.joint_sets, len(joints.normal)
-    normal = np.concatenate([joints.normal, others.normal])
-    stiffness = np.stack([normal, np.concatenate([joints.shear, others.shear])])
+    stiffness = np.append([joints.normal, joints.shear], others, axis=1)
+    normal = stiffness[0]
     which = np.full(len(normal), len(sets))
     which[:made] = np.minimum(joints.kinds[:, 0], len(sets))
     rock = None

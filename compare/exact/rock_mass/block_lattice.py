@@ -115,7 +115,7 @@ def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
         rock = facets.joint_set == NO_SET
         weld = facets.blocks[rock], facets.centroid[rock], facets.normal[rock]
         shifts = np.tile(shift, (len(weld[0]), 1))
-        k[rock] = np.stack(welds(scene, blocks, further, *weld, shifts), axis=1)
+        k[rock] = welds(scene, blocks, further, *weld, shifts).T
         share[rock] = 1.0
         none = np.zeros((len(k), *2 * facets.normal.shape[1:]))
         parts.append(contacts_of(blocks, facets, k, none, share, shift))

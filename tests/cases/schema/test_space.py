@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.block_summary import block_summary
+from jointwave.cases.material.rock_mass import block_summary
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import SIDES
 from jointwave.cases.warnings import warnings
