@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.histories import Gabor, LoadHistory, Ricker, Step
+from jointwave.cases.histories import Gabor, Integrated, LoadHistory, Ricker, Step
 from jointwave.cases.incident import WITHIN, plane_wave
 from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
@@ -97,11 +97,13 @@ def _wave(
     """Return the wave whose particle velocity (m/s) is `gain` times a history."""
     end = min(duration, history.end or duration)
     breaks = [t for t in history.breaks if 0 <= t <= end]
+    if isinstance(history, Integrated):  # the velocity stays when the acceleration has ended
+        breaks.append(duration)
     times = np.union1d(np.linspace(0.0, end, SAMPLES), breaks)
     values = gain * np.asarray(history.value(times))
     peak = float(np.abs(values).max())
-    least = SEEN * peak if isinstance(history, Ricker | Gabor) else 0.0
-    felt = np.flatnonzero(np.abs(values) > least)
+    least = SEEN if isinstance(history, Ricker | Gabor) else WITHIN
+    felt = np.flatnonzero(np.abs(values) > least * peak)
     first, last = max(felt[0] - 1, 0), min(felt[-1] + 1, len(times) - 1)
     with np.errstate(over="ignore", under="ignore"):
         square = values**2

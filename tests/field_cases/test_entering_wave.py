@@ -54,6 +54,21 @@ def pillar(start, load):
     }
 
 
+@pytest.mark.parametrize(
+    ("start", "shape", "final"), [("quiet", "half-sine", 2.0), ("fixed", "sine", 0.0)]
+)
+def test_what_a_base_keeps_moving_at_enters_to_the_end_of_the_scene(start, shape, final):
+    """Half a sine of acceleration a leaves the velocity a T / pi, a whole one none: of (1 - cos)
+    the energy is 3/2 of the square of a T / 2 pi over the pulse, and 4 of it from then on."""
+    load = PRESSURE | {"quantity": "acceleration", "amplitude": 8.0, "shape": shape}
+    (wave,) = entering_waves(jw.load(pillar(start, load)))
+    unit, pulse = 8.0 * 0.02 / (2 * np.pi), 0.01 if final else 0.02
+    lasts = 0.024 if final else pulse
+    energy = DENSITY * 1350.0 * unit**2 * (1.5 * pulse + final**2 * (lasts - pulse))
+    assert wave.velocity == pytest.approx(2 * unit, rel=1e-6)
+    assert (wave.length, wave.energy) == pytest.approx((1350.0 * lasts, energy), rel=1e-3)
+
+
 @pytest.mark.parametrize("engine", ["dem", "continuum-equivalent"])
 @pytest.mark.parametrize(("start", "load", "stress"), ENTERS)
 def test_what_explain_says_enters_a_pillar_enters(start, load, stress, engine):
