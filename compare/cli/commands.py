@@ -5,31 +5,15 @@ from types import SimpleNamespace
 
 import typer
 
-from jointwave.compare.cli.options import (
-    CORES,
-    DryOption,
-    Engine,
-    EngineOption,
-    FreshOption,
-    JsonOption,
-    ModelOption,
-    PrintOptions,
-    SceneOptions,
-    StoredOptions,
-    StrictOption,
-    SweepOptions,
-    WithOption,
-    WorkersOption,
-    command,
-)
-from jointwave.compare.cli.options import app as app
+from jointwave.compare.cli import options
 from jointwave.compare.scenes import shipped
 from jointwave.compare.solvers.dem import DEM
 
+app = options.app
 FRAMES = 201  # of an animation, where the scene records no snapshots
 
 
-@command("scene_files:new")
+@options.command("scene_files:new")
 class New(SimpleNamespace):
     """Write a scene to start from, NAME.toml, with every key explained.
 
@@ -49,15 +33,15 @@ class New(SimpleNamespace):
     )
 
 
-@command("scene_files:list_scenes")
+@options.command("scene_files:list_scenes")
 class List(SimpleNamespace):
     """List the shipped scenes and their variants."""
 
-    as_json: JsonOption = False
+    as_json: options.JsonOption = False
 
 
-@command("explain:explain")
-class Explain(SceneOptions):
+@options.command("explain:explain")
+class Explain(options.SceneOptions):
     """Print what a scene has, its time steps, and what can solve it.
 
     These are its rock and its blocks, the waves that enter, the active effects, the step of each
@@ -68,11 +52,11 @@ class Explain(SceneOptions):
     every: bool = typer.Option(
         False, "--all", help="Also absent effects and solutions that do not apply, and why."
     )
-    as_json: JsonOption = False
+    as_json: options.JsonOption = False
 
 
-@command("picture:picture")
-class Picture(SceneOptions):
+@options.command("pictures:picture")
+class Picture(options.SceneOptions):
     """Draw a scene, or a map of its results.
 
     A scene is drawn with its joints, boundaries, receivers, loads and waves. Variants that look
@@ -107,8 +91,8 @@ class Picture(SceneOptions):
     )
 
 
-@command("run:run")
-class Run(PrintOptions, SweepOptions):
+@options.command("run:run")
+class Run(options.PrintOptions, options.SweepOptions):
     """Simulate a scene and write its results as NetCDF files.
 
     The files are DIR/[variant/]ENGINE[-MODEL].nc. With record.fields, snapshots are written as
@@ -124,8 +108,8 @@ class Run(PrintOptions, SweepOptions):
     scene with random joints for several seeds.
     """
 
-    engine: EngineOption = [Engine(DEM.engine)]
-    model: ModelOption = None
+    engine: options.EngineOption = [options.Engine(DEM.engine)]
+    model: options.ModelOption = None
     out: Path | None = typer.Option(None, help="Folder for results (default: out/SCENE).")
     every: float = typer.Option(
         60.0,
@@ -137,11 +121,11 @@ class Run(PrintOptions, SweepOptions):
     resume: bool = typer.Option(
         False, "--resume", help="Continue an interrupted run from its checkpoint."
     )
-    fresh: FreshOption = False
+    fresh: options.FreshOption = False
 
 
-@command("compare:compare")
-class Compare(PrintOptions, StoredOptions, SweepOptions):
+@options.command("compare:compare")
+class Compare(options.PrintOptions, options.StoredOptions, options.SweepOptions):
     """Solve a scene by all that applies; say how far apart, and why.
 
     Prints a line per engine: its worst misfit from the finest physics, with variant and receiver,
@@ -174,13 +158,13 @@ class Compare(PrintOptions, StoredOptions, SweepOptions):
     spectral: bool = typer.Option(
         True, help="Add envelope and phase misfit (Kristekova et al. 2006)."
     )
-    given: WithOption = []
+    given: options.WithOption = []
     align: bool = typer.Option(
         False, "--align", help="Align each --with curve by cross-correlation."
     )
 
 
-class WaveOptions(StoredOptions):
+class WaveOptions(options.StoredOptions):
     """How the wave in a scene is shown."""
 
     quantity: str | None = typer.Option(
@@ -193,10 +177,10 @@ class WaveOptions(StoredOptions):
     scale: float | None = typer.Option(
         None, metavar="X", help="Exaggeration of displacements (default: visible)."
     )
-    dry: DryOption = False
+    dry: options.DryOption = False
 
 
-@command("animation:view")
+@options.command("pictures:view")
 class View(WaveOptions):
     """Show a scene by both engines, displaced and coloured by the wave.
 
@@ -212,7 +196,7 @@ class View(WaveOptions):
     )
 
 
-@command("animation:animate")
+@options.command("pictures:animate")
 class Animate(WaveOptions):
     """Animate the blocks and the wave of both engines as MP4 or GIF.
 
@@ -228,8 +212,8 @@ class Animate(WaveOptions):
     seconds: float = typer.Option(10.0, help="Duration of the film.")
 
 
-@command("figure:figure")
-class Figure(StoredOptions):
+@options.command("pictures:figure")
+class Figure(options.StoredOptions):
     """Draw the waveforms of a scene as a figure for a paper.
 
     A panel for each variant and receiver, two side by side from a width of 170 mm. Files need no
@@ -237,16 +221,16 @@ class Figure(StoredOptions):
     """
 
     out: Path = typer.Option(..., help="Output file: .pdf, .svg or .png.")
-    engine: EngineOption = []
-    model: ModelOption = None
-    given: WithOption = []
+    engine: options.EngineOption = []
+    model: options.ModelOption = None
+    given: options.WithOption = []
     width: float = typer.Option(90.0, min=60, max=1000, help="Width, mm.")
     font_size: float = typer.Option(8.0, min=4, max=40, help="Size of letters, pt.")
-    dry: DryOption = False
+    dry: options.DryOption = False
 
 
-@command("report:report")
-class Report(PrintOptions):
+@options.command("compare:report")
+class Report(options.PrintOptions):
     """Write scenes, their figures, misfits and costs as one HTML page.
 
     The page needs no other file. Without a scene: the figures of Guo & Li (2002), the paper's
@@ -261,15 +245,15 @@ class Report(PrintOptions):
         autocompletion=shipped,
     )
     out: Path = typer.Option(Path("report"), help="Folder for results.")
-    fresh: FreshOption = False
+    fresh: options.FreshOption = False
     peers: Path | None = typer.Option(
         None, help="Table of make bench-peers (default: out/peers/points.csv if present)."
     )
-    strict: StrictOption = False
+    strict: options.StrictOption = False
 
 
-@command("studies:plan")
-class Plan(SceneOptions):
+@options.command("studies:plan")
+class Plan(options.SceneOptions):
     """Find the cheapest engine, elements and step that meet a misfit.
 
     Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
@@ -281,8 +265,8 @@ class Plan(SceneOptions):
     )
 
 
-@command("studies:effects")
-class Effects(PrintOptions, SceneOptions):
+@options.command("studies:effects")
+class Effects(options.PrintOptions, options.SceneOptions):
     """Measure what every effect of a scene costs and changes.
 
     For each effect this is its part of the time of a step, and the misfit of the result without it.
@@ -293,8 +277,8 @@ class Effects(PrintOptions, SceneOptions):
     out: Path = typer.Option(Path("effects"), help="Folder for table, diagram and points.")
 
 
-@command("studies:study")
-class Study(PrintOptions):
+@options.command("studies:study")
+class Study(options.PrintOptions):
     """Run a study of accuracy against cost; without a name, list them.
 
     A scene is solved in many ways, each with its error and its cost, in a table and a diagram.
@@ -306,11 +290,11 @@ class Study(PrintOptions):
 
     name: str | None = typer.Argument(None, help="A shipped study or a study's TOML file.")
     out: Path = typer.Option(Path("studies"), help="Folder for tables and points.")
-    workers: WorkersOption = CORES
+    workers: options.WorkersOption = options.CORES
 
 
-@command("fit:fit")
-class Fit(PrintOptions, SceneOptions):
+@options.command("studies:fit")
+class Fit(options.PrintOptions, options.SceneOptions):
     """Fit keys of a scene to measured waveforms by least squares.
 
     Values come with 95 % intervals, for independent residuals. Keys that the waveforms cannot
@@ -330,21 +314,21 @@ class Fit(PrintOptions, SceneOptions):
     that compares the fitted scene with the same files.
     """
 
-    given: WithOption
+    given: options.WithOption
     free: list[str] = typer.Option(
         ...,
         "--free",
         metavar="KEY",
         help="A key of the scene, or clock; repeatable, or separated by commas.",
     )
-    engine: Engine | None = typer.Option(
+    engine: options.Engine | None = typer.Option(
         None, help="dem: rigid blocks (default); continuum: rock; exact: exact solutions."
     )
-    model: ModelOption = None
+    model: options.ModelOption = None
     out: Path | None = typer.Option(None, help="Folder for the table fit.csv.")
 
 
-@command("doctor:doctor")
+@options.command("doctor:doctor")
 class Doctor(SimpleNamespace):
     """Print what is installed, and check both engines.
 
@@ -353,4 +337,4 @@ class Doctor(SimpleNamespace):
     minute.
     """
 
-    as_json: JsonOption = False
+    as_json: options.JsonOption = False

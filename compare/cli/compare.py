@@ -1,32 +1,26 @@
-"""`jointwave compare`: the verdict on each engine, every distance on request, or JSON."""
+"""`jointwave compare`: the verdict on each engine, every distance on request, or JSON; and
+`jointwave report`, the same as a page."""
 
 import json
 from functools import partial
 from typing import Any
 
-from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
-from jointwave.compare.cli.commands import Compare
+from jointwave.compare.cli import terminal
+from jointwave.compare.cli.commands import Compare, Report
 from jointwave.compare.cli.forecast import runs_of, show_forecasts
-from jointwave.compare.cli.inputs import load, stored_in, warn
+from jointwave.compare.cli.inputs import curves_of, load, results_of, stored_in
+from jointwave.compare.cli.options import SceneOptions
 from jointwave.compare.cli.studies import sweep
-from jointwave.compare.cli.terminal import (
-    print_json,
-    progress,
-    say,
-    say_warnings,
-    show_facts,
-    show_frame,
-)
 from jointwave.compare.engines import ENGINES, in_words, label_of
-from jointwave.compare.figures.tables import alignment_frame, reading_frame, write_comparisons
-from jointwave.compare.misfit.alignment import common_times
-from jointwave.compare.misfit.external import Curves, doubts, read_curves
+from jointwave.compare.figures import tables
 from jointwave.compare.misfit.pairs import GIVEN, Comparison, unit_doubts
 from jointwave.compare.misfit.ranking import applicable, deciding
-from jointwave.compare.report.tables import distance_table, reason_table, run_table, verdict_table
-from jointwave.compare.report.verdict import EngineScore, engine_scores, score
+from jointwave.compare.report import report as pages
+from jointwave.compare.report.verdict import EngineScore, engine_scores, verdict_table, verdicts
 from jointwave.compare.runs import comparison
+from jointwave.compare.runs.checkpoint.lock import locked
+from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.studies.sweep import Work, compare_scene
 from jointwave.results.dataset import energy_residual, open_ledger
 
@@ -58,32 +52,15 @@ def compare(asked: Compare) -> None:
         return
     found = []
     for one in scenes:
-        with progress(one.name or one.title) as tell:
+        with terminal.progress(one.name or one.title) as tell:
             if shows_all:
                 options = tell, asked.align, asked.spectral, folder
                 found.append(comparison.compare(one, curves, *options))
             else:
                 found.append(comparison.solved(one, deciding(one), tell, folder))
     if asked.out is not None:
-        write_comparisons(found, asked.out)
+        tables.write_comparisons(found, asked.out)
     show_comparisons(found, asked.every, asked.as_json, asked.reads)
-
-
-def curves_of(
-    given: list[str], scenes: list[AnyScene], strict: bool, align: bool = False
-) -> list[Curves]:
-    """Read what `--with` names; what is wrong with it is said before anything is solved."""
-    if not given:
-        if align:
-            raise SceneError("--align", "", None, "needs --with: there is no curve to align")
-        return []
-    curves = read_curves(given, scenes)
-    if not align:
-        for scene in scenes:
-            for one in curves:
-                common_times(one, scene)
-    warn(scenes, strict, lambda scene: doubts(curves, scene))
-    return curves
 
 
 def show_comparisons(
@@ -97,89 +74,116 @@ def show_comparisons(
     for one in found:
         ledgers = (open_ledger(r) for r in one.results.values() if "energy" in r)
         lines = [*filter(None, ledgers), *unit_doubts(one)]
-        say_warnings(f"{one.scene.name}: {line}".lstrip(": ") for line in lines)
+        terminal.say_warnings(f"{one.scene.name}: {line}".lstrip(": ") for line in lines)
     if as_json:
-        print_json([_facts(one, reads) for one in found])
+        terminal.print_json([_facts(one, reads) for one in found])
         return
     _show_verdicts(found, every)
     if every:
-        for table in (distance_table, run_table, alignment_frame, reason_table):
-            say("")
-            show_frame(table(found))
+        beside = tables.alignment_frame, tables.reason_table
+        for table in (tables.distance_table, tables.run_table, *beside):
+            terminal.say("")
+            terminal.show_frame(table(found))
     if reads:
-        readings = reading_frame(found)
+        readings = tables.reading_frame(found)
         if readings.empty:
-            say("no velocities are recorded: record.velocity or record.points is empty")
-        show_frame(readings)
+            terminal.say("no velocities are recorded: record.velocity or record.points is empty")
+        terminal.show_frame(readings)
 
 
 def _show_verdicts(found: list[Comparison], every: bool) -> None:
     """Print a line for each engine, what it is compared with, and the curves of others."""
     scores, scene, several = engine_scores(found), found[0].scene, len(found) > 1
     count = f"({len(found)} variants, the worst of each engine)" if several else scene.name
-    say(f"{scene.title} {count}".rstrip(), "bold")
+    terminal.say(f"{scene.title} {count}".rstrip(), "bold")
     if not scores:
         exact = ", ".join(map(label_of, found[0].results)) or "none"
-        say(f"no engine applies; solutions: {exact}")
+        terminal.say(f"no engine applies; solutions: {exact}")
         reasons = found[0].reasons
-        show_facts({label_of(name): reasons[name] for name in ENGINES if name in reasons})
+        terminal.show_facts({label_of(name): reasons[name] for name in ENGINES if name in reasons})
     else:
-        table = verdict_table(scores).join(run_table(found)["stepping (s)"])
+        table = verdict_table(scores).join(tables.run_table(found)["stepping (s)"])
         if not every:
             table = table.loc[table[WORST].fillna(-1.0).groupby("engine", sort=False).idxmax()]
-        show_frame(table if several else table.droplevel("variant"))
+        terminal.show_frame(table if several else table.droplevel("variant"))
         _show_remarks(scores)
-    distances = distance_table(found)
+    distances = tables.distance_table(found)
     if GIVEN in distances.index.get_level_values(0):
         given = distances.xs(GIVEN)
         furthest = given["relative L2 (%)"].groupby(level=["variant", "pair"]).idxmax()
-        show_frame(given.loc[furthest, ["relative L2 (%)", "peak ratio"]])
+        terminal.show_frame(given.loc[furthest, ["relative L2 (%)", "peak ratio"]])
     for beside in found[0].besides:
         start, end = beside.time[0], beside.time[-1]
         if end - start < WHOLE * scene.time.duration:
-            say(f"{beside.curves.name}: compared from {start:.4g} to {end:.4g} s only")
+            terminal.say(f"{beside.curves.name}: compared from {start:.4g} to {end:.4g} s only")
     if not every:
-        say(HINT, "dim")
+        terminal.say(HINT, "dim")
 
 
 def _show_remarks(scores: dict[str, EngineScore]) -> None:
     """Print the references, static states that differ, and variants that are not checked or exceed
     their bounds."""
-    variants = [one for of_all in scores.values() for one in of_all.variants]
-    reasons = dict.fromkeys(
-        f"{label_of(one.against)} ({one.reason})" for one in variants if one.against
-    )
-    if reasons:
-        say(f"reference: {'; '.join(reasons)}")
+    every = [one for of_all in scores.values() for one in of_all.variants]
+    found = (f"{label_of(one.against)} ({one.reason})" for one in every if one.against)
+    if reasons := dict.fromkeys(found):
+        terminal.say(f"reference: {'; '.join(reasons)}")
     for engine, of_all in scores.items():
         words = max(of_all.variants, key=lambda one: one.static.misfit).static_words
         if words:
-            say(f"static state of {label_of(engine)} {in_words(words)}")
+            terminal.say(f"static state of {label_of(engine)} {in_words(words)}")
         if len(of_all.variants) > 1 and of_all.unchecked:
-            say(f"not checked independently: {label_of(engine)} ({', '.join(of_all.unchecked)})")
+            terminal.say(
+                f"not checked independently: {label_of(engine)} ({', '.join(of_all.unchecked)})"
+            )
         if of_all.broken:
-            say(f"exceeds the scene's bound: {', '.join(dict.fromkeys(of_all.broken))}")
+            terminal.say(f"exceeds the scene's bound: {', '.join(dict.fromkeys(of_all.broken))}")
 
 
 def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:
     """Return a variant's distances, curves and verdicts, machine-readable."""
     scene, results = comparison.scene, comparison.results
-    read = {"readings": reading_frame([comparison]).to_dict("records")} if reads else {}
+    read = {"readings": tables.reading_frame([comparison]).to_dict("records")} if reads else {}
     said = next((result.attrs["warnings"] for result in results.values()), "[]")
-    scores = {name: score(name, comparison) for name in ENGINES if name in results}
     return {
         "title": scene.title,
         "variant": scene.name,
         "warnings": json.loads(said),
         "engines": {
-            name: one.facts
-            | {"seconds_stepping": results[name].attrs["seconds_stepping"]}
-            | {"out_of_bounds": list(one.broken)}
-            for name, one in scores.items()
+            name: one.facts | {"seconds_stepping": results[name].attrs["seconds_stepping"]}
+            for name, one in verdicts(comparison).items()
         },
         "rows": [row.facts for row in comparison.rows],
-        "curves": alignment_frame([comparison]).to_dict("records"),
+        "curves": tables.alignment_frame([comparison]).to_dict("records"),
         "energy_residual": {k: energy_residual(r) for k, r in results.items() if "energy" in r},
         "does_not_apply": comparison.reasons,
         **read,
     }
+
+
+def report(asked: Report) -> None:
+    """Write the page and print what it begins with, or what it would cost."""
+    scenes, out = asked.scenes or [], asked.out
+    for name in scenes:
+        load(SceneOptions(scene=name, changes=[], variant=None, strict=asked.strict))
+    stored = ResultFolder(results_of(), asked.fresh)
+    if asked.dry:
+        runs, parts = pages.planned(out, scenes, stored)
+        show_forecasts(runs, asked.as_json, parts)
+        return
+    with locked(out, out / "figures", out / "studies"), terminal.progress("report") as advance:
+        found = pages.build(out, advance, scenes=scenes, peers_table=asked.peers, stored=stored)
+    page, summary = found.page, found.summary
+    if asked.as_json:
+        rows, columns = summary.reset_index().values.tolist(), ["what", "pair", *summary]
+        terminal.print_json({"page": str(found.file), "columns": columns, "rows": rows})
+        return
+    for sentence in page["lead"].values():
+        terminal.say(sentence)
+    if page["about"]:
+        terminal.say(f"\n{page['about'].sentence}")
+    terminal.say("\nLargest relative L2 misfit over the variants of each scene, in %:")
+    terminal.show_frame(summary)
+    if claims := page["claims"]:
+        holding = sum(claim.holds for _, claim in claims)
+        terminal.say(f"{holding} of {len(claims)} claims of the paper's figures hold.")
+    terminal.say(f"report: {found.file}")

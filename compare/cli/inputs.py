@@ -1,4 +1,4 @@
-"""Input of the commands: scenes with changed keys, their warnings, and stored results."""
+"""Input of the commands: scenes with changed keys, curves of others, warnings, stored results."""
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -10,6 +10,8 @@ from jointwave.cases.warnings import warnings
 from jointwave.compare import scenes
 from jointwave.compare.cli.options import SceneOptions, StoredOptions
 from jointwave.compare.cli.terminal import say_warnings
+from jointwave.compare.misfit.alignment import common_times
+from jointwave.compare.misfit.external import Curves, doubts, read_curves
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.solvers.incident import side_warnings
 
@@ -26,6 +28,23 @@ def load(asked: SceneOptions, every: bool = True) -> list[AnyScene]:
         found = [scenes.load(asked.scene, asked.variant or "", changes)]
     warn(found, asked.strict)
     return found
+
+
+def curves_of(
+    given: list[str], scenes: list[AnyScene], strict: bool, align: bool = False
+) -> list[Curves]:
+    """Read what `--with` names; what is wrong with it is said before anything is solved."""
+    if not given:
+        if align:
+            raise SceneError("--align", "", None, "needs --with: there is no curve to align")
+        return []
+    curves = read_curves(given, scenes)
+    if not align:
+        for scene in scenes:
+            for one in curves:
+                common_times(one, scene)
+    warn(scenes, strict, lambda scene: doubts(curves, scene))
+    return curves
 
 
 def stored_in(asked: StoredOptions, out: Path | None = None) -> ResultFolder:

@@ -47,8 +47,7 @@ WorkersOption = Annotated[
     int, typer.Option(min=1, help="Number of processes; what is timed runs in one.")
 ]
 DryOption = Annotated[
-    bool,
-    typer.Option("--dry-run", help="Only print what would run, with its time and memory."),
+    bool, typer.Option("--dry-run", help="Only print what would run, with its time and memory.")
 ]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
 FreshOption = Annotated[

@@ -9,7 +9,7 @@ from jointwave.compare.engines import ENGINES, applies, names
 from jointwave.compare.figures.charts.energy import energy
 from jointwave.compare.figures.charts.maps import peak_velocities
 from jointwave.compare.figures.charts.propagation import propagation
-from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
+from jointwave.compare.figures.charts.spacetime import space_time
 from jointwave.compare.figures.charts.spectra import spectra
 from jointwave.compare.figures.charts.waveforms import (
     STYLES,
@@ -37,9 +37,9 @@ def figures_of(
     space-time diagrams.
     """
     along = [
-        space_time(f"{name}-space-time-{k}{'-exact' * shown.exact}", one.scene, variant, shown)
+        figure
         for k, ((variant, one), field) in enumerate(zip(named(comparisons), fields, strict=False))
-        for shown in diagrams_of(one.scene, field)
+        for figure in space_time(f"{name}-space-time-{k}", one.scene, variant, field)
     ]
     return [
         scene_figure(name, comparisons),

@@ -6,14 +6,14 @@ exact solutions are thin, dark and dashed over them. Hues are those of Okabe & I
 all kinds of colour blindness.
 """
 
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from jointwave.compare.engines import names, solver
-from jointwave.compare.solvers.record import LINE, Line, thin
-from jointwave.results.labels import QUANTITIES, label
+from matplotlib import rc_params_from_file
 
-WIDTH = 11.0  # inches of the page's figures, which it shows at the width of its column
-SIZE = 9.0  # points of the page's letters
+from jointwave.compare.engines import names, solver
+from jointwave.compare.solvers.record import Line, thin
+from jointwave.results.labels import QUANTITIES, label
 
 #: Styles of external curves, in order of files: black and grey, which no solution has, drawn
 #: between engines and exact solutions.
@@ -43,27 +43,12 @@ TERMS = {
     "work": "#000000",
 }
 
-RC: dict[Any, Any] = {
-    "figure.figsize": (WIDTH, WIDTH),
-    "savefig.dpi": 160,  # also of images in an SVG or PDF
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans", "Helvetica", "Arial"],
-    "font.size": SIZE,
-    "lines.linewidth": LINE,
-    "axes.titlesize": "medium",
-    "axes.titlelocation": "left",
-    "axes.titlepad": 3.0,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.xmargin": 0.0,
-    "xtick.major.width": 0.7,
-    "ytick.major.width": 0.7,
-    "legend.fontsize": "medium",
-    "legend.frameon": False,
-    "svg.fonttype": "none",
-    "path.simplify_threshold": 0.5,  # pixels: half of the thinnest line
-}
+#: Matplotlib's settings of the page's figures.
+RC: dict[Any, Any] = dict(
+    rc_params_from_file(Path(__file__).with_name("page.mplstyle"), use_default_template=False)
+)
+WIDTH = RC["figure.figsize"][0]  # inches
+SIZE = RC["font.size"]  # points of the page's letters
 
 
 def printed(width: float, size: float) -> dict[Any, Any]:

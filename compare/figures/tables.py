@@ -1,8 +1,13 @@
-"""Tables of a comparison in SI, and its files: distances, readings of velocities, how curves were
-aligned."""
+"""Tables of a scene's variants, and their files: distances, readings of velocities, how curves were
+aligned, runs, and why solutions do not apply.
+
+Frames are in SI, a fact a column; tables are for display, with what labels a row in the index, and
+misfits in percent.
+"""
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,13 +17,14 @@ from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import save
 from jointwave.compare.figures.receivers import curve_table
 from jointwave.compare.figures.variants import named
-from jointwave.compare.misfit.pairs import Comparison, Row
+from jointwave.compare.misfit.pairs import Comparison, Row, meaning
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.readings.attenuation import quality_factor, wave_speed, waveforms
 from jointwave.compare.readings.ground_motion import arias, ppv, response_spectrum
 from jointwave.compare.readings.recordings import dataset_of, sampling
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_csv
+from jointwave.results.dataset import energy_residual, open_ledger
 
 PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
 #: Columns of distances, by their names in `Row.facts`.
@@ -33,6 +39,10 @@ DISTANCES = {
     "envelope": "envelope misfit",
     "phase": "phase misfit",
 }
+#: The same of `distance_table`, in their order, with the factor of each.
+SHOWN = {"relative L2 (%)": 100, "peak ratio": 1, "delay (ms)": 1e3, "period ratio": 1}
+SHOWN |= {"envelope misfit (%)": 100, "phase misfit (%)": 100}
+MANY = 8  # columns: a table of more is transposed
 NAME = "comparison"  # of the files of a comparison
 READINGS = (
     "peak velocity (m/s)",
@@ -49,6 +59,10 @@ def rows_of(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
     return [(name, row) for name, comparison in named(comparisons) for row in comparison.rows]
 
 
+def _under(rows: list[dict[str, Any]], *index: str) -> pd.DataFrame:
+    return pd.DataFrame(rows).set_index(list(index)) if rows else pd.DataFrame()
+
+
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     """Return every distance of every pair at every receiver of every variant."""
     rows = [{"variant": v, "pair": row.solutions, **row.facts} for v, row in rows_of(comparisons)]
@@ -56,6 +70,50 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
     axes = {axis: f"{axis} (m)" for axis in "xyz" if axis in found}
     names = {**dict.fromkeys(("kind", "pair", "variant", "quantity")), **axes, **DISTANCES}
     return found.reindex(columns=list(names)).rename(columns=axes | DISTANCES)
+
+
+def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return the relative L2 misfits: a row a pair, a column a variant and receiver, or where these
+    are many the other way round.
+
+    Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
+    """
+    shown = [
+        (variant, row)
+        for variant, row in rows_of(comparisons)
+        if not (row.faint or row.place.quantity == "displacement")
+    ]
+    several = len({row.place for _, row in shown}) > 1
+    cells: dict[tuple[str, str, str], dict[str, float]] = {}
+    for variant, row in shown:
+        label = f"{variant}, {row.place.words} (%)" if several else f"{variant} (%)"
+        at = row.pair.kind, row.solutions, meaning(row.pair)
+        cells.setdefault(at, {})[label] = 100 * row.distance.misfit
+    names = ["kind", "pair", "cause of the difference"]
+    table = pd.DataFrame(list(cells.values()), pd.MultiIndex.from_tuples(cells, names=names))
+    if len(table.columns) <= MANY:
+        return table
+    long = table.droplevel(2).T.rename(index=lambda at: at.removesuffix(" (%)"))
+    long = long.rename(columns=lambda pair: f"{pair} (%)", level=1)
+    return long.rename_axis(index="variant and receiver", columns=[None, None])
+
+
+def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return every distance of every pair at every receiver of every variant."""
+    rows = [
+        {"kind": row.pair.kind, "variant": name, "pair": row.solutions, "receiver": row.place.words}
+        | {head: x and k * x for (head, k), x in zip(SHOWN.items(), row.distance, strict=True)}
+        for name, row in rows_of(comparisons)
+    ]
+    return _under(rows, "kind", "variant", "pair", "receiver")
+
+
+def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
+    """Return by kind and pair the largest misfit over the variants, of the waveform that is
+    furthest off, as `[expect]` bounds it."""
+    found = distance_frame(comparisons)
+    misfits = 100 * found[DISTANCES["misfit"]].where(~found["faint"].astype(bool), 0.0)
+    return misfits.groupby([found["kind"], found["pair"]], sort=False).max().rename("misfit")
 
 
 def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
@@ -125,6 +183,44 @@ def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
         found = peaks[i], intensities[i], values[k], periods[k], speed, Q
         where = {"at": Place("velocity", "", at).receiver}
         yield where | dict(zip(READINGS, map(float, found), strict=True))
+
+
+def run_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return what each engine's run took, and how well its energy ledger closes."""
+    rows = [
+        {
+            "engine": engine,
+            "variant": variant,
+            "degrees of freedom": result.attrs["degrees_of_freedom"],
+            "steps": result.attrs["steps"],
+            "step (µs)": 1e6 * result.attrs["dt"],
+            "of the critical step": result.attrs["dt"] / result.attrs["critical_dt"],
+            "stepping (s)": float(result.attrs["seconds_stepping"]),
+            "energy residual": _residual(result) if "energy" in result else "not recorded",
+        }
+        for variant, one in named(comparisons)
+        for engine, result in one.results.items()
+        if "steps" in result.attrs
+    ]
+    return _under(rows, "engine", "variant")
+
+
+def _residual(result: xr.Dataset) -> str:
+    return f"{energy_residual(result):.1e}{' (open)' * bool(open_ledger(result))}"
+
+
+def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
+    """Return why the solutions that are not drawn do not apply, and to which variants."""
+    columns = ["solution", "variants", "why it does not apply"]
+    rows = [
+        (solution, variant, reason)
+        for variant, one in named(comparisons)
+        for solution, reason in one.reasons.items()
+    ]
+    alike = pd.DataFrame(rows, columns=columns).groupby(columns[::2], as_index=False)["variants"]
+    every = len(comparisons)
+    table = alike.agg(lambda names: "all" if len(names) == every else "; ".join(names))
+    return table[columns]
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:

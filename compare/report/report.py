@@ -3,6 +3,7 @@
 import logging
 import platform
 import shlex
+from base64 import b64encode
 from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.metadata import version
@@ -11,17 +12,19 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 
 from jointwave.compare import engines
-from jointwave.compare.engines import Progress
+from jointwave.compare.engines import Progress, in_words, label_of
+from jointwave.compare.figures.style import style
 from jointwave.compare.report import peers
-from jointwave.compare.report.overview import lead
-from jointwave.compare.report.page import render
 from jointwave.compare.report.scenes import (
     ROCK_MASSES,
     SceneRequest,
     SolvedScene,
     asked_for,
+    lead,
     solve,
 )
 from jointwave.compare.report.scenes import planned as planned_of_scene
@@ -33,7 +36,7 @@ from jointwave.compare.runs.timings import machine
 from jointwave.compare.scenes import load_variants
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
-from jointwave.compare.text import percent
+from jointwave.compare.text import in_seconds, percent, table_cell, times
 
 WORKERS = 2  # processes
 SCENES = 0.4  # of the progress of the paper's page; studies and hard cases are the rest
@@ -77,22 +80,19 @@ def build(
     of results for each scene.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
-    tell, out = progress or (lambda fraction: None), Path(out)
-    pool = partial(in_processes, workers)
-    requests = asked_for(scenes)
+    tell, out, pool = progress or (lambda fraction: None), Path(out), partial(in_processes, workers)
     work = partial(solve, folder=out / "figures", stored=stored)
-    if scenes:
-        solved = _solve(work, requests, pool, tell)
-        title = solved[0].scene.title if len(solved) == 1 else f"{len(solved)} scenes"
-        command = f"jointwave report {shlex.join(dict.fromkeys(scenes))} --out DIR"
-        page = _page(title, command, solved)
-    else:
-        others = peers.read(peers_table)
+    requests, part, rock, studies = asked_for(scenes), 1.0, list[SolvedScene](), []
+    if not scenes:
+        others, part = peers.read(peers_table), SCENES
         requests += asked_for(ROCK_MASSES)
-        solved = _solve(work, requests, pool, lambda x: tell(SCENES * x))
-        studies = list(sections(out, pool, hard, others, lambda x: tell(SCENES + (1 - SCENES) * x)))
-        paper, rock = solved[: -len(ROCK_MASSES)], solved[-len(ROCK_MASSES) :]
-        page = _page(PAPERS, "jointwave report --out DIR", paper, rock, studies)
+    solved = _solve(work, requests, pool, lambda x: tell(part * x))
+    title = solved[0].scene.title if len(solved) == 1 else f"{len(solved)} scenes"
+    if not scenes:
+        studies = [*sections(out, pool, hard, others, lambda x: tell(part + (1 - part) * x))]
+        solved, rock, title = solved[: -len(ROCK_MASSES)], solved[-len(ROCK_MASSES) :], PAPERS
+    command = shlex.join(["jointwave", "report", *dict.fromkeys(scenes), "--out", "DIR"])
+    page = _page(title, command, solved, rock, studies)
     return Report(write_text(out / "index.html", render(page, out)), page)
 
 
@@ -120,8 +120,7 @@ def _solve(
     found: dict[str, SolvedScene] = {}
     # Those of most variants first, so that all processes end together.
     ordered = sorted(requests, key=lambda one: -len(load_variants(one.file)))
-    points = {one.name: one for one in ordered}
-    for name, one in pool(work, points):
+    for name, one in pool(work, {one.name: one for one in ordered}):
         if one is None:
             raise MemoryError(f"scene {name}: {DIED}")
         found[name] = one
@@ -131,16 +130,12 @@ def _solve(
         said = f"{len(took)} results of {', '.join(read)}, computed in {sum(took):.2g} s"
         log.info("reads %s; --fresh computes anew", said)
     with alone():
-        return [_timed(found[one.name]) for one in requests]
-
-
-def _timed(one: SolvedScene) -> SolvedScene:
-    """Return a scene with the least seconds of stepping it of two runs."""
-
-    def again(name: str, taken: float) -> float:
-        return min(taken, engines.solve(name, one.scene).attrs["seconds_stepping"])
-
-    return one._replace(seconds={k: s if s > LONG else again(k, s) for k, s in one.seconds.items()})
+        for one in found.values():
+            for name, taken in one.seconds.items():
+                if taken <= LONG:
+                    again = engines.solve(name, one.scene).attrs["seconds_stepping"]
+                    one.seconds[name] = min(taken, again)
+    return [found[one.name] for one in requests]
 
 
 def _page(
@@ -178,3 +173,55 @@ def _page(
         "machine": "{processor}, {cores} cores, numba {numba}".format_map(machine()),
         "versions": {"Python": platform.python_version()} | versions,
     }
+
+
+def render(page: dict[str, Any], out: Path) -> str:
+    """Return the page, which is to stand in `out`, beside the files that it links to.
+
+    page : what the templates show, of `_page`.
+    """
+    loader = PackageLoader(__package__)
+    environment = Environment(
+        loader=loader,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.globals |= {
+        "style": Markup(loader.get_source(environment, "page.css")[0]),
+        "colour": lambda name: style(name).colour,
+        "label": label_of,
+        "link": lambda file: file.relative_to(out).as_posix(),
+    }
+    environment.filters |= {
+        "picture": _picture,
+        "units": _unbroken,
+        "percent": percent,
+        "times": times,
+        "in_seconds": in_seconds,
+        "rows": _rows,
+    }
+    return environment.get_template("report.html").render(page)
+
+
+def _picture(file: Path) -> str:
+    """Return an image, SVG or GIF, as an address of its own."""
+    kind = {".svg": "svg+xml", ".gif": "gif"}[file.suffix]
+    return f"data:image/{kind};base64,{b64encode(file.read_bytes()).decode('ascii')}"
+
+
+def _unbroken(text: str) -> str:
+    """Return text whose numbers do not break from their signs."""
+    return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
+
+
+def _rows(table: pd.DataFrame) -> Markup:
+    """Return a table in HTML, its labels on the left, alike ones together, and numbers on the
+    right; solutions and pairs of them are in words."""
+    if table.index.nlevels > 1:
+        table = pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
+    cells = table.apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))
+    cells = cells.rename(index=in_words, columns=in_words)
+    named = table.index.names != [None]
+    return Markup(cells.to_html(border=0, index=named, justify="unset"))

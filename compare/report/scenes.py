@@ -5,6 +5,7 @@ import re
 import shlex
 from collections.abc import Sequence
 from dataclasses import replace
+from math import isnan
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +13,8 @@ import pandas as pd
 
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
+from jointwave.compare.engines import ENGINES, label_of
+from jointwave.compare.figures import tables
 from jointwave.compare.figures.export import Drawn, SceneFigure, save
 from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.scene_figures import (
@@ -21,24 +24,24 @@ from jointwave.compare.figures.scene_figures import (
     lead_figure,
     runs_along,
 )
-from jointwave.compare.figures.tables import distance_frame, reading_frame
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable
-from jointwave.compare.report import tables
-from jointwave.compare.report.claims import joints, pillar, travel  # noqa: F401 (add theirs)
-from jointwave.compare.report.claims.claim import CLAIMS, Claim
-from jointwave.compare.report.verdict import EngineScore, engine_scores
+from jointwave.compare.report.claims import CLAIMS, Claim, joints, pillar, travel  # noqa: F401 (add theirs)
+from jointwave.compare.report.verdict import NOT_CHECKED, EngineScore, engine_scores, verdict_table
 from jointwave.compare.runs import timings
 from jointwave.compare.runs.comparison import compare
 from jointwave.compare.runs.output import write_csv
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder, seconds_read
 from jointwave.compare.scenes import find, load_variants
 from jointwave.compare.studies.forecast import Run, runs_of
+from jointwave.compare.text import in_seconds, percent, span, times
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
 FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
 #: The shipped scenes of rock masses that the page shows beside the paper's figures.
 ROCK_MASSES = ("rock-mass/one-joint",)
+FEW = 2  # references that are named
+CLOSE = 0.2  # the largest misfit that a solution is said to be within
 TAKEN = {"", "overview", "made", "rock-masses", "peers", "effects", "stability", "motion", "film"}
 
 
@@ -59,6 +62,10 @@ class SceneRequest(NamedTuple):
     def label(self) -> str:
         """What a column or a link calls it."""
         return f"fig. {self.number}" if self.number else self.name
+
+    def own(self, stored: ResultFolder) -> ResultFolder:
+        """Return the folder of its results in that of all."""
+        return replace(stored, folder=stored.folder and stored.folder / self.file.stem)
 
 
 class SolvedScene(NamedTuple):
@@ -118,15 +125,11 @@ def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
 
 def planned(request: SceneRequest, stored: ResultFolder) -> list[Run]:
     """Return the runs of `solve`."""
-    own, found = _own(request, stored), []
+    own, found = request.own(stored), []
     for scene in load_variants(request.file):
         found += runs_of(applicable(scene), scene, own, point=request.label)
         found += runs_of(*runs_along(scene), own, ALONG, request.label)
     return found
-
-
-def _own(request: SceneRequest, stored: ResultFolder) -> ResultFolder:
-    return replace(stored, folder=stored.folder and stored.folder / request.file.stem)
 
 
 def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -> SolvedScene:
@@ -134,15 +137,12 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
 
     stored : the folder with a folder of results for each scene.
     """
-    own, scenes = _own(request, stored), load_variants(request.file)
+    own, scenes = request.own(stored), load_variants(request.file)
     comparisons = [compare(scene, spectral=True, stored=own) for scene in scenes]
     results, scores = comparisons[0].results, engine_scores(comparisons)
-    frames = {"misfits": distance_frame(comparisons), "readings": reading_frame(comparisons)}
-    files = {
-        name: write_csv(folder / f"{request.name}-{name}.csv", frame)
-        for name, frame in frames.items()
-        if len(frame)
-    }
+    readings = tables.reading_frame(comparisons)
+    frames = {"misfits": tables.distance_frame(comparisons), "readings": readings}
+    paths = {name: folder / f"{request.name}-{name}.csv" for name in frames if len(frames[name])}
     versions = [json.loads(result.attrs.get("versions", "{}")) for result in results.values()]
     return SolvedScene(
         request,
@@ -151,14 +151,14 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
         *_draw(request, comparisons, folder, own),
         [measure(comparisons) for measure in CLAIMS.get(request.number or 0, [])],
         {
-            "verdicts": tables.verdict_table(scores),
+            "verdicts": verdict_table(scores),
             "misfits": tables.misfit_table(comparisons),
             "distances": tables.distance_table(comparisons),
-            "readings": frames["readings"],
+            "readings": readings,
             "runs": tables.run_table(comparisons),
             "reasons": tables.reason_table(comparisons),
         },
-        files,
+        {name: write_csv(path, frames[name]) for name, path in paths.items()},
         scores,
         tables.worst_misfits(comparisons),
         {name: number for one in versions for name, number in one.items()},
@@ -186,3 +186,41 @@ def _draw(
 def _save(one: SceneFigure, folder: Path) -> Drawn:
     drawn = save(one.figure, folder, one.name, one.title, one.table, png=False)
     return drawn._replace(caption=one.caption, folded=one.folded)
+
+
+def lead(scenes: Sequence[SolvedScene]) -> dict[str, str]:
+    """Return a sentence on each engine that solves a scene."""
+    found = {e: [one for one in scenes if e in one.scores] for e in ENGINES}
+    return {engine: _sentence(engine, solved) for engine, solved in found.items() if solved}
+
+
+def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
+    """Return how far an engine lies from the finest physics, by kind of scene, and at what cost."""
+    kinds = dict.fromkeys(one.scene.kind for one in scenes)
+    of_kind = {kind: [one for one in scenes if one.scene.kind == kind] for kind in kinds}
+    apart = [
+        _distance(engine, some, f" for the {kind}{'s' * (len(some) > 1)}" * (len(kinds) > 1))
+        for kind, some in of_kind.items()
+    ]
+    costs = [one.costs[engine] for one in scenes]
+    cost = f"{span(costs, times)} the time of the cheapest"
+    if max(costs) == 1:
+        cost = f"the cheapest: {span((one.seconds[engine] for one in scenes), in_seconds)} a run"
+    return f"{ENGINES[engine].sentence} {' and '.join(apart)}; {cost}."
+
+
+def _distance(engine: str, scenes: list[SolvedScene], of: str) -> str:
+    """Return the largest misfit from the references, which are named if there are few; of : which
+    scenes, in words."""
+    scores = [one.scores[engine] for one in scenes]
+    found = [x for one in scores if not isnan(x := one.total.judged)]
+    if not found:
+        return NOT_CHECKED.word + of
+    against = dict.fromkeys(v.against for one in scores for v in one.variants if v.against)
+    names = (re.sub("(.*), exact", r"the exact \1", label_of(name)) for name in against)
+    whom = " or ".join(names) if len(against) <= FEW else "the finest physics"
+    apart = percent(max(found), 2).removeprefix("< ")
+    close = max(found) <= CLOSE
+    said = f"within {apart} % of {whom}" if close else f"up to {apart} % from {whom}"
+    unchecked = sum(bool(one.unchecked) for one in scores)
+    return f"{said}{of}" + f" ({unchecked} of {len(scenes)} {NOT_CHECKED.word})" * bool(unchecked)

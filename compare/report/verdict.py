@@ -4,6 +4,8 @@ from collections.abc import Iterable, Mapping
 from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
+import pandas as pd
+
 from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.variants import named
@@ -17,7 +19,8 @@ from jointwave.compare.misfit.metrics import Worst, worst
 from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 from jointwave.compare.misfit.ranking import kind_of, own_exact, reference_of
 from jointwave.compare.scenes import bound_of
-from jointwave.results.labels import PEAK_STRESS, PPV
+from jointwave.compare.text import mean_and_worst
+from jointwave.results.labels import PEAK_STRESS, PEAKS, PPV
 
 
 class Verdict(NamedTuple):
@@ -96,6 +99,7 @@ class VariantScore(NamedTuple):
             "own_error": self.own.misfit,
             "static_difference": self.static.misfit,
             "verdict": self.verdict.word,
+            "out_of_bounds": list(self.broken),
         }
 
 
@@ -107,7 +111,8 @@ class EngineScore(NamedTuple):
     @property
     def total(self) -> Worst:
         """The largest misfit; nan if nothing has checked any variant."""
-        return max((one.total for one in self.variants), key=_resolved)
+        totals = (one.total for one in self.variants)
+        return max(totals, key=lambda one: -1.0 if isnan(one.judged) else one.judged)
 
     @property
     def unchecked(self) -> list[str]:
@@ -136,8 +141,24 @@ def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
     return {engine: EngineScore(variants) for engine, variants in found.items() if variants}
 
 
-def _resolved(one: Worst) -> float:
-    return -1.0 if isnan(one.judged) else one.judged
+def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
+    """Return the verdict on each engine in each variant, with what engineers read."""
+    rows = [
+        {
+            "engine": engine,
+            "variant": one.variant,
+            "worst misfit (%)": 100 * one.total.judged,
+            "at": one.total.where if one.against else "",
+            **{f"{name} (%)": mean_and_worst(one.peaks.get(name)) for name in PEAKS},
+            "compared with": one.against,
+            "which is a": one.meaning,
+            "own error (%)": 100 * one.own.judged,
+            "verdict": f"{one.verdict.sign} {one.verdict.word}",
+        }
+        for engine, score in scores.items()
+        for one in score.variants
+    ]
+    return pd.DataFrame(rows).set_index(["engine", "variant"]) if rows else pd.DataFrame()
 
 
 def verdicts(comparison: Comparison) -> dict[str, VariantScore]:

@@ -136,7 +136,7 @@ SOLVERS = (
     "jointwave.compare.studies.plan.plan",
     "jointwave.compare.report.report.build",
     "jointwave.compare.runs.comparison.solved",
-    "jointwave.compare.cli.animation.take",
+    "jointwave.compare.cli.pictures.take",
     "jointwave.compare.cli.explain.explanation",
     "jointwave.compare.cli.doctor.examine",
 )

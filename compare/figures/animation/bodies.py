@@ -139,10 +139,7 @@ def _solid(s: Snapshots, side: float) -> Snapshots:
 
 
 def colours_of(
-    every: list[np.ndarray],
-    sign: str,
-    colours: str | None = None,
-    sizes: Sequence[np.ndarray] = (),
+    every: list[np.ndarray], sign: str, colours: str | None = None, sizes: Sequence[np.ndarray] = ()
 ) -> tuple[ScalarMappable, float]:
     """Return the colours of some values, symmetric around zero where they have a sign, and the part
     of the values beyond them.
@@ -172,11 +169,7 @@ class BodyView:
     """
 
     def __init__(
-        self,
-        ax: Axes,
-        body: Body,
-        colours: ScalarMappable,
-        per_away: tuple[float, float] = FRONT,
+        self, ax: Axes, body: Body, colours: ScalarMappable, per_away: tuple[float, float] = FRONT
     ) -> None:
         self.body, (right, up) = body, per_away
         self.projection = np.array([[1.0, 0.0], [right, up], [0.0, 1.0]])

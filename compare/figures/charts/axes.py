@@ -1,6 +1,6 @@
 """Common layout of charts: rows of axes over one abscissa, their headings, a legend above."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from textwrap import fill
 from typing import Any
@@ -55,25 +55,12 @@ def _add_legend(figure: Figure) -> int:
             entries.setdefault(label, line)
     room = 72 * figure.get_figwidth() / rcParams["font.size"]
     labels = [fill(label, int((room - HANDLE) / LETTER)) for label in entries]
-    columns = int(room / (HANDLE + LETTER * max(map(len, entries))))
-    columns = min(max(1, columns), len(entries))
-    legend = figure.legend(
-        list(entries.values()),
-        labels,
-        loc="outside upper center",
-        ncols=columns,
-        handlelength=4.0,
-    )
+    columns = int(np.clip(room // (HANDLE + LETTER * max(map(len, entries))), 1, len(entries)))
+    place: dict[str, Any] = {"loc": "outside upper center", "ncols": columns, "handlelength": 4.0}
+    legend = figure.legend(list(entries.values()), labels, **place)
     for text in legend.get_texts():
         text.set_parse_math(False)  # users' names may have dollar signs
     return -(-len(entries) // columns) + sum(label.count("\n") for label in labels)
-
-
-def share(axes: Iterable[Axes]) -> None:
-    """Let axes share their ordinate."""
-    first, *others = axes
-    for ax in others:
-        ax.sharey(first)
 
 
 def set_heading(ax: Axes, heading: str, small: bool = False) -> None:

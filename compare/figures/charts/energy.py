@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from jointwave.compare.engines import ENGINES, in_order, label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading, share
+from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.style import TERMS, style, unit_for
 from jointwave.compare.figures.variants import named
@@ -29,7 +29,8 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     variants = ledgers.groupby("variant", sort=False)
     with chart(1, len(variants), [2.2, 0.8], "time (ms)") as (figure, axes):
         for row in axes[0]:
-            share(row)
+            for ax in row[1:]:
+                ax.sharey(row[0])
         axes[0, 0, 0].set_ylabel(f"energy ({unit.name})")
         for (variant, of_variant), (upper, lower) in zip(variants, axes[0].T, strict=True):
             set_heading(upper, str(variant))

@@ -46,27 +46,16 @@ class Diagram(NamedTuple):
         return f"{one}\n− {other} ({self.unit.name})\n{share}"
 
 
-class Diagrams(NamedTuple):
-    """The diagrams of one figure of a variant over time [n] (s) and y [m] (m).
+def space_time(
+    name: str, scene: Scene, variant: str, fields: dict[str, xr.Dataset]
+) -> list[SceneFigure]:
+    """Return the figures of one variant: of the first engine and the differences between engines,
+    and, folded, of the differences from the exact solution of each engine's own model.
 
-    exact : whether they are the differences of engines from the exact solutions of their models.
-    words : the quantity and its component.
+    Empty without motion. name : unique on the page. variant : its name there. fields : results by
+    name, as returned by `along_pillar`.
     """
-
-    exact: bool
-    words: str
-    time: np.ndarray
-    y: np.ndarray
-    diagrams: list[Diagram]
-
-
-def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
-    """Return the diagrams of the first engine and of the differences between engines, then those of
-    the differences from the exact solution of each engine's own model.
-
-    Empty without motion. fields : of one variant, by name, as returned by `along_pillar`.
-    """
-    engines = [name for name in in_order(fields) if name in ENGINES]
+    engines = [engine for engine in in_order(fields) if engine in ENGINES]
     if not engines:
         return []
     first = fields[engines[0]]
@@ -87,42 +76,42 @@ def diagrams_of(scene: Scene, fields: dict[str, xr.Dataset]) -> list[Diagrams]:
 
     between = [diagram(p.one, p.other) for p in pairs() if {p.one, p.other} <= set(engines)]
     errors = [diagram(n, own) for n in engines if (own := own_exact(n, fields, scene))]
-    places = first[first[quantity].dims[0]].values
-    about = f"{quantity} {component}".rstrip(), first.time.values, places
-    shown = [Diagrams(False, *about, [diagram(engines[0]), *between])]
-    return [*shown, Diagrams(True, *about, errors)] if errors else shown
+    words = f"{quantity} {component}".rstrip() + f" along the pillar over time, {variant}"
+    places = first.time.values, first[first[quantity].dims[0]].values
+    shown = [diagram(engines[0]), *between]
+    drawn = [_figure(name, f"{words[0].upper()}{words[1:]}", scene, *places, shown)]
+    if errors:
+        title = f"Numerical error of {words}"
+        drawn.append(_figure(f"{name}-exact", title, scene, *places, errors)._replace(folded=True))
+    return drawn
 
 
-def space_time(name: str, scene: Scene, variant: str, shown: Diagrams) -> SceneFigure:
-    """Return the figure of one variant's diagrams; those of numerical errors are folded.
-
-    name : unique on the page. variant : its name there.
-    """
-    title = f"{shown.words} along the pillar over time, {variant}"
-    title = f"Numerical error of {title}" if shown.exact else f"{title[0].upper()}{title[1:]}"
-    columns, ms = max(len(shown.diagrams), 2), 1e3 * shown.time
+def _figure(
+    name: str, title: str, scene: Scene, time: np.ndarray, y: np.ndarray, shown: list[Diagram]
+) -> SceneFigure:
+    """Return the figure of diagrams over time [n] (s) and y [m] (m)."""
+    columns, ms = max(len(shown), 2), 1e3 * time
     with blank(HEIGHT) as figure:
         axes = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]
-        for ax, diagram in zip(axes, shown.diagrams, strict=False):
+        for ax, diagram in zip(axes, shown, strict=False):
             limit = float(np.abs(diagram.values).max()) or 1.0
             mesh = ax.pcolormesh(
-                *(ms, shown.y, diagram.values),
+                *(ms, y, diagram.values),
                 vmin=-limit,
                 vmax=limit,
                 cmap=FIELD if diagram.share is None else DIFFERENCE,
                 shading="nearest",  # a smooth image takes four times the bytes
                 rasterized=True,
             )
-            ax.set(xlim=ms[[0, -1]], ylim=shown.y[[0, -1]], xlabel="time (ms)")
+            ax.set(xlim=ms[[0, -1]], ylim=y[[0, -1]], xlabel="time (ms)")
             ax.set_title(diagram.heading)
             ticks = MaxNLocator(4, symmetric=True)  # few, so that long numbers do not overlap
             figure.colorbar(mesh, ax=ax, location="bottom", aspect=40, ticks=ticks)
             for layer in scene.soft_layers:
                 ax.axhline(layer.y, color="#111111", linewidth=1.1, linestyle=(0, (4, 3)))
-        for ax in axes[len(shown.diagrams) :]:
+        for ax in axes[len(shown) :]:
             ax.set_visible(False)
         axes[0].set_ylabel("y (m)")
-    y, time = np.meshgrid(shown.y, shown.time, indexing="ij")
-    values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown.diagrams}
-    table = pd.DataFrame({"y (m)": y.ravel(), "time (s)": time.ravel(), **values})
-    return SceneFigure(name, title, CAPTION, figure, table, shown.exact)
+    index = pd.MultiIndex.from_product([y, time], names=["y (m)", "time (s)"])
+    values = {f"{d.name} ({d.unit.name})": d.values.ravel() for d in shown}
+    return SceneFigure(name, title, CAPTION, figure, pd.DataFrame(values, index).reset_index())

@@ -1,6 +1,7 @@
 """Amplitude spectra of the waveforms, with the characteristic frequencies of the scene."""
 
 from math import pi
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,10 +22,9 @@ DECADES = 5  # drawn below the largest amplitude
 NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
 TAPERED = 0.1  # of the waveform, at its end
 PADDED = 2  # times its length, at least, to the next power of two
-#: Marks in words, and where spectra end over the frequency of a mark.
 LOAD, CUT_OFF = "load", "chain cut-off"
-MEANING = {LOAD: "1/T of the load", CUT_OFF: "cut-off of the chain of blocks"}
-BEYOND = {LOAD: 25.0, CUT_OFF: 2.5}
+#: Marks in words, and where spectra end over the frequency of a mark.
+MARKS = {LOAD: ("1/T of the load", 25.0), CUT_OFF: ("cut-off of the chain of blocks", 2.5)}
 
 
 def marks_of(panel: Panel) -> list[tuple[str, float]]:
@@ -46,10 +46,9 @@ def marks_of(panel: Panel) -> list[tuple[str, float]]:
 def tapered(values: np.ndarray) -> np.ndarray:
     """Return waveforms [n, ...] whose last tenth is brought to zero by half a cosine (Harris
     1978)."""
-    count = len(values)
-    room = max(1, round(TAPERED * count))
-    window = np.ones(count)
-    window[count - room :] = 0.5 * (1 + np.cos(np.pi * (np.arange(room) + 1) / room))
+    room = max(1, round(TAPERED * len(values)))
+    after = np.arange(1 - len(values), 1) / room + 1  # from 0 to 1 within the last tenth
+    window = 0.5 * (1 + np.cos(np.pi * np.clip(after, 0, 1)))
     return (values.T * window).T
 
 
@@ -69,7 +68,7 @@ def spectra_of(panel: Panel) -> pd.DataFrame:
     frequency (Hz), from one wave in the duration to beyond the marks."""
     time = panel.curves.index.values
     frequency, amplitude = spectrum(panel.curves.to_numpy(), float(time[1] - time[0]))
-    end = max((BEYOND[name] * at for name, at in marks_of(panel)), default=np.inf)
+    end = max((MARKS[name][1] * at for name, at in marks_of(panel)), default=np.inf)
     drawn = (frequency >= 1 / (time[-1] - time[0])) & (frequency <= end)
     return pd.DataFrame(amplitude[drawn], np.round(frequency[drawn], 9), panel.curves.columns)
 
@@ -81,7 +80,7 @@ def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     if not any(curves.to_numpy().any() for _, curves in found):
         return []
     marks = dict(mark for panel, _ in found for mark in marks_of(panel))
-    known = ", ".join(f"{MEANING[mark]} {frequency:.4g} Hz" for mark, frequency in marks.items())
+    known = ", ".join(f"{MARKS[mark][0]} {frequency:.4g} Hz" for mark, frequency in marks.items())
     caption = (
         "Fourier amplitude of each waveform, its last tenth tapered by half a cosine and padded "
         "with zeros to twice its length or more." + (f" Dotted: {known}." if known else "")
@@ -121,15 +120,8 @@ def _draw_marks(ax: Axes, panel: Panel, largest: pd.Series, middle: float) -> No
     for (name, at), after in zip(marks, following, strict=True):
         is_left, is_high = after < NEAR * at, np.interp(at, largest.index, largest) < middle
         ax.axvline(at, color=GREY, linewidth=0.8, linestyle=":", zorder=1)
-        ax.annotate(
-            name,
-            (at, 0.97 if is_high else 0.03),
-            (-2 if is_left else 2, 0),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            rotation=90,
-            ha="right" if is_left else "left",
-            va="top" if is_high else "bottom",
-            fontsize="x-small",
-            color=GREY,
-        )
+        look: dict[str, Any] = {"rotation": 90, "fontsize": "x-small", "color": GREY}
+        look |= {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+        look |= {"ha": "right", "xytext": (-2, 0)} if is_left else {"ha": "left", "xytext": (2, 0)}
+        place = (at, 0.97 if is_high else 0.03)
+        ax.annotate(name, place, va="top" if is_high else "bottom", **look)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES, in_order, label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading, share
+from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
 from jointwave.compare.figures.receivers import Panel, curve_table, in_rows, panels
 from jointwave.compare.figures.style import (
@@ -142,7 +142,8 @@ def draw_overlays(
             (overlay, *axes[i, :, j]) for i, row in enumerate(grid) for j, overlay in enumerate(row)
         ]
         if len({overlay.quantity for overlay, *_ in pairs}) == 1:
-            share(upper for _, upper, *_ in pairs)
+            for _, upper, *_ in pairs[1:]:
+                upper.sharey(pairs[0][1])
         for overlay, upper, *lower in pairs:
             draw_waveforms(upper, overlay)
             for ax in lower:
@@ -151,7 +152,7 @@ def draw_overlays(
 
 
 def draw_waveforms(ax: Axes, overlay: Overlay) -> None:
-    """Draw an overlay into axes."""
+    """Draw an overlay into axes, without its residuals."""
     unit = DRAWN[UNITS[overlay.quantity]]
     # A velocity has no static state but the remainder of a relaxation.
     rests = overlay.at_rest and overlay.quantity != "velocity"
@@ -196,8 +197,8 @@ def by_solution(panel: Panel) -> Overlay:
             drawn = GIVEN[k % len(GIVEN)]
             drawn = drawn if len(beside.time) <= MOST_MARKS else drawn._replace(marker="")
             traces.append(Trace(name, drawn, panel.given[name] - panel.at_rest))
-    reference = label_of(panel.reference)
-    return Overlay(panel.heading, panel.place.quantity, panel.at_rest, reference, traces)
+    about = panel.heading, panel.place.quantity, panel.at_rest, label_of(panel.reference)
+    return Overlay(*about, traces)
 
 
 def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:

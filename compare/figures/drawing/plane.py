@@ -16,20 +16,8 @@ from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.figures.drawing.sketch import (
-    EDGE,
-    INK,
-    SETS,
-    Sketch,
-    gravity,
-    lines,
-    note,
-    pushing,
-    receivers,
-    rock,
-    shaking,
-    side,
-)
+from jointwave.compare.figures.drawing import sketch
+from jointwave.compare.figures.drawing.sketch import EDGE, INK, SETS, Sketch
 from jointwave.compare.figures.drawing.surroundings import surroundings
 from jointwave.compare.figures.style import in_unit
 
@@ -63,11 +51,11 @@ def _bodies(blocks: Blocks, turn: slice, rocks: dict[int, str], joints: Joints) 
     """Return the blocks by the region that they are of, with its name, and the joints."""
     of, outlines = blocks.body.region, blocks.outlines
     shapes = [
-        rock(name, [outlines.of(i)[:, turn] for i in np.flatnonzero(of == region)], k)
+        sketch.rock(name, [outlines.of(i)[:, turn] for i in np.flatnonzero(of == region)], k)
         for k, (region, name) in enumerate(rocks.items())
     ]
     for name, own, *look in joints:
-        shapes += lines(name, blocks.contacts.ends[own][..., turn], *look)
+        shapes += sketch.lines(name, blocks.contacts.ends[own][..., turn], *look)
     return shapes
 
 
@@ -91,20 +79,21 @@ def _of_pillar(scene: Scene) -> Sketch:
     above = half + 0.15 * unit[1]
     shapes = [
         *_bodies(blocks, turn, {k: f"_segment {k}" for k in range(len(scene.parts))}, joints),
-        *lines("_sides", along, INK, 1.0),
-        *side("start", start, scene.ends.start),
-        *side("end", end, scene.ends.end),
-        *receivers("section: stress", [(y, above) for y in scene.record.stress], "v"),
-        *receivers("point: velocity", [(y, 0.0) for y in scene.record.velocity], "o"),
+        *sketch.lines("_sides", along, INK, 1.0),
+        *sketch.side("start", start, scene.ends.start),
+        *sketch.side("end", end, scene.ends.end),
+        *sketch.receivers("section: stress", [(y, above) for y in scene.record.stress], "v"),
+        *sketch.receivers("point: velocity", [(y, 0.0) for y in scene.record.velocity], "o"),
         *_end_load(scene, half, unit),
     ]
     corner = np.array([pillar.length, half + 0.7 * unit[1]])
     if scene.gravity is not None:
         down = np.array(scene.gravity.direction)[[1, 0]]
-        shapes += gravity(corner + 0.3 * unit * down, down, 0.6 * unit, scene.gravity.acceleration)
+        tip, size = corner + 0.3 * unit * down, 0.6 * unit
+        shapes += sketch.gravity(tip, down, size, scene.gravity.acceleration)
     if scene.prestress is not None and scene.prestress.normal:
         words = f"prestress {in_unit(scene.prestress.normal, 'Pa')}"
-        shapes.append(note(corner * [0.5, 1.0], words, "center"))
+        shapes.append(sketch.note(corner * [0.5, 1.0], words, "center"))
     cut = f"in {len(scene.parts)} segments" if scene.segments else f"of {pillar.block:g} m"
     cut += " on average" * (scene.scatter is not None)
     size = f": {scene.block_count:,} blocks {cut}, {pillar.side:g} m × {pillar.side:g} m"
@@ -129,11 +118,13 @@ def _end_load(scene: Scene, half: float, unit: np.ndarray) -> list[Artist]:
         words.append("load also along z" if in_plane else "load along z")
     if load.is_eccentric and load.at[1]:
         words.append(f"at z = {load.at[1]:g} m")
-    shapes = [note(unit * [-0.3, 0.7] + [0.0, half], ", ".join(words), "left")] if words else []
+    shapes = list[Artist]()
+    if words:
+        shapes.append(sketch.note(unit * [-0.3, 0.7] + [0.0, half], ", ".join(words), "left"))
     if in_plane and load.arm is None and scene.shakes_base:
-        shapes.append(shaking(unit * [-0.7, 0.0], direction, unit))
+        shapes.append(sketch.shaking(unit * [-0.7, 0.0], direction, unit))
     elif in_plane and load.arm is None:
-        shapes.append(pushing(np.array([0.0, load.at[0]]), direction, unit))
+        shapes.append(sketch.pushing(np.array([0.0, load.at[0]]), direction, unit))
     return shapes
 
 
@@ -149,7 +140,7 @@ def _of_rock_mass(scene: RockMass) -> Sketch:
     shapes = _bodies(blocks, turn, rocks, joints)
     held = [getattr(scene.boundaries, name, "free") for name in domain.sides]
     for kept in dict.fromkeys(held):  # openings are free
-        shapes += side("side", edges.ends[np.array(held)[edges.side] == kept], kept)
+        shapes += sketch.side("side", edges.ends[np.array(held)[edges.side] == kept], kept)
     low, high = (at(blocks.outlines.corners, axis=0) for at in (np.min, np.max))
     size = float(max((high - low).min(), SLENDER * (high - low).max()))
     words = ""

@@ -8,8 +8,7 @@ import pandas as pd
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.report.claims import waves
-from jointwave.compare.report.claims.claim import claim, listed
+from jointwave.compare.report.claims import claim, listed, waves
 
 
 def _at_the_layer(

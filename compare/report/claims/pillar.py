@@ -11,8 +11,7 @@ from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.variants import named, variant_names
 from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.report.claims import waves
-from jointwave.compare.report.claims.claim import claim, falls, listed
+from jointwave.compare.report.claims import claim, falls, listed, waves
 from jointwave.compare.solvers.dem import DEM
 
 

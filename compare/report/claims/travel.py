@@ -9,8 +9,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.report.claims import waves
-from jointwave.compare.report.claims.claim import claim, listed
+from jointwave.compare.report.claims import claim, listed, waves
 from jointwave.compare.solvers.dem import DEM
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from jointwave.compare.engines import solve
 from jointwave.compare.figures import scene_figures
-from jointwave.compare.figures.charts.spacetime import diagrams_of, space_time
+from jointwave.compare.figures.charts.spacetime import space_time
 from jointwave.compare.figures.scene_figures import along_pillar, recorded_along
 
 
@@ -17,9 +17,10 @@ def fields_of(scene, *names):
 def test_a_scene_that_records_velocities_is_drawn_by_them(pillar):
     """At the centres of blocks."""
     scene = pillar(time__duration=0.03, record__stress=[], record__velocity=[20.25])
-    shown = diagrams_of(scene, fields_of(scene, "dem", "lattice"))[0]
-    assert shown.words == "velocity" and shown.diagrams[0].unit.name == "mm/s"
-    assert shown.y[:2].tolist() == [0.25, 1.25]
+    shown = space_time("fig", scene, "a", fields_of(scene, "dem", "lattice"))[0]
+    assert shown.title == "Velocity along the pillar over time, a"
+    assert shown.table.columns[2] == "rigid blocks (mm/s)"
+    assert shown.table["y (m)"].unique()[:2].tolist() == [0.25, 1.25]
 
 
 def test_sections_are_the_waveforms_of_the_comparison(pillar, compared, monkeypatch):
@@ -49,19 +50,20 @@ def test_sections_are_joints_and_both_ends(pillar):
 
 def test_engines_stand_beside_each_other_and_their_errors_apart(pillar):
     scene = pillar(pillar__length=10.0, record__stress=[5.0], time__duration=0.02)
-    shown, errors = diagrams_of(scene, along_pillar(scene))
-    assert [d.name for d in shown.diagrams] == [
+    shown, errors = space_time("fig", scene, "as it stands", along_pillar(scene))
+    assert [name.rpartition(" (")[0] for name in shown.table.columns[2:]] == [
         "rigid blocks",
         "rigid blocks − jointed rock",
         "rigid blocks − homogenised rock",
         "homogenised rock − jointed rock",
     ]
-    *names, last = (d.name for d in errors.diagrams)
+    *names, last = (name.rpartition(" (")[0] for name in errors.table.columns[2:])
     assert names == ["rigid blocks − rigid blocks, exact", "jointed rock − jointed bar, exact"]
     assert last.startswith("homogenised rock − ")
-    assert 1e-5 < errors.diagrams[0].share < 2e-3  # numerical error
-    picture = space_time("fig", scene, "as it stands", shown)
-    assert picture.title == "Stress along the pillar over time, as it stands"
+    share = errors.figure.axes[0].get_title(loc="left").splitlines()[-1]
+    assert 1e-3 < float(share.split()[2]) < 0.2  # numerical error, %
+    assert shown.title == "Stress along the pillar over time, as it stands"
+    assert errors.title == "Numerical error of stress along the pillar over time, as it stands"
 
 
 @pytest.mark.parametrize(
@@ -75,9 +77,12 @@ def test_engines_stand_beside_each_other_and_their_errors_apart(pillar):
 def test_largest_force_is_drawn_else_what_turns(pillar, changes, words):
     keys = {"pillar__length": 10.0, "time__duration": 0.01, "record__stress": [5.0]} | changes
     scene, still = pillar(**keys), pillar(**keys, load__amplitude=0.0)
-    (shown,) = diagrams_of(scene, {"dem": solve("spatial-lattice", recorded_along(scene))})
-    assert shown.words == words and shown.diagrams[0].values.any()
-    assert diagrams_of(still, {"dem": solve("spatial-lattice", recorded_along(still))}) == []
+    found, rest = (
+        space_time("fig", one, "", {"dem": solve("spatial-lattice", recorded_along(one))})
+        for one in (scene, still)
+    )
+    assert found[0].title.lower().startswith(f"{words} along") and rest == []
+    assert len(found) == 1 and found[0].table.iloc[:, 2].any()
 
 
 def test_diagrams_hold_the_numbers_of_the_table(scene_with, ink):
@@ -88,16 +93,19 @@ def test_diagrams_hold_the_numbers_of_the_table(scene_with, ink):
     found = fields_of(scene, "dem", "equivalent-bar")
     fields = {"dem": found["dem"], "continuum-equivalent": found["equivalent-bar"]}
     one, other = (result.stress.values for result in fields.values())
-    shown = diagrams_of(scene, fields)[0]
-    for diagram, values in zip(shown.diagrams, (one, one - other), strict=True):
-        np.testing.assert_allclose(diagram.unit.size * diagram.values, values, rtol=1e-12)
-    stress, difference = shown.diagrams
-    share = difference.share * np.abs(other).max()
-    assert share == pytest.approx(np.abs(one - other).max()) and "at most" in difference.heading
-    inner = stress.values[1:-1]
+    picture = space_time("fig", scene, "soft layer", fields)[0]
+    units = {"MPa": 1e6, "kPa": 1e3}
+    shown = []
+    for column, values in zip(picture.table.columns[2:], (one, one - other), strict=True):
+        size = units[column.rpartition("(")[2].removesuffix(")")]
+        shown.append(picture.table[column].to_numpy().reshape(values.shape))
+        np.testing.assert_allclose(size * shown[-1], values, rtol=1e-12)
+    headings = [ax.get_title(loc="left") for ax in picture.figure.axes[:2]]
+    share = 100 * np.abs(one - other).max() / np.abs(other).max()
+    assert headings[1].endswith(f"at most {share:.2g} % of the largest")
+    inner = shown[0][1:-1]
     ends = " to ".join(f"{x:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
-    assert stress.heading.endswith(f"between the ends {ends}")
-    picture = space_time("fig", scene, "soft layer", shown)
+    assert headings[0].endswith(f"between the ends {ends}")
     drawn = [ax for ax in picture.figure.axes if ax.get_title(loc="left")]
     assert len(drawn) == 2 and "soft layer" in picture.title
     for ax, column in zip(drawn, picture.table.columns[2:], strict=True):

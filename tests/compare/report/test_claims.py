@@ -10,8 +10,7 @@ from jointwave import cases
 from jointwave.compare.engines import solve
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.report.claims import joints, pillar, travel
-from jointwave.compare.report.claims.claim import CLAIMS
+from jointwave.compare.report.claims import CLAIMS, joints, pillar, travel
 from jointwave.compare.report.claims.pillar import mostly_dispersion
 from jointwave.compare.report.scenes import PAPER as SCENES
 

@@ -8,9 +8,8 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.figures.export import Drawn
-from jointwave.compare.report.claims.claim import Claim
-from jointwave.compare.report.page import render
-from jointwave.compare.report.report import build
+from jointwave.compare.report.claims import Claim
+from jointwave.compare.report.report import build, render
 from jointwave.compare.report.scenes import (
     PAPER,
     ROCK_MASSES,

@@ -12,13 +12,12 @@ import xarray as xr
 
 from jointwave.compare.cli.compare import show_comparisons
 from jointwave.compare.engines import label_of
+from jointwave.compare.figures.tables import misfit_table
 from jointwave.compare.misfit.alignment import AlignedCurve
 from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.misfit.metrics import Worst
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
-from jointwave.compare.report.overview import lead
-from jointwave.compare.report.scenes import SolvedScene
-from jointwave.compare.report.tables import misfit_table
+from jointwave.compare.report.scenes import SolvedScene, lead
 from jointwave.compare.report.verdict import (
     NOT_CHECKED,
     EngineScore,
