@@ -52,8 +52,11 @@ def write_new(name: str, source: str | None = None, template: str = "pillar") ->
     if source is None:
         return [create(path, starter(path.name, template).encode())]
     given = find(source)
-    load_variants(given)
-    places = {path: given, **{path.parent / file: given.parent / file for file in _files(given)}}
+    scenes = load_variants(given)
+    files = [pulse.file for one in scenes for pulse in one.pulses]
+    files += [getattr(one.numerics.continuum, "mesh", None) for one in scenes]
+    named = filter(None, files)
+    places = {path: given, **{path.parent / file: given.parent / file for file in named}}
     for place in places:
         if place.exists() or place.is_symlink():
             raise SceneError(str(place), "", None, "exists already: choose another NAME")
@@ -65,11 +68,3 @@ def starter(file: str, template: str = "pillar") -> str:
     text, stem = (TEMPLATES / f"{template}.toml").read_text(encoding="utf-8"), Path(file).stem
     text = text.replace(f'"{TITLE}"', json.dumps(stem), 1).replace(f"{TITLE}.toml", quote(file))
     return text.replace(f"--out {TITLE}", f"--out {quote(stem)}")
-
-
-def _files(scene: Path) -> list[str]:
-    """Return the names of the load files and meshes of a scene's variants."""
-    scenes = cases.load(scene)
-    files = [pulse.file for one in scenes for pulse in one.pulses]
-    files += [getattr(one.numerics.continuum, "mesh", None) for one in scenes]
-    return [file for file in dict.fromkeys(files) if file is not None]

@@ -10,7 +10,6 @@ from warnings import warn
 import pytest
 
 from jointwave.cases.errors import SceneError, UnstableError
-from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import SceneWarning
 from jointwave.compare.cli.inputs import scene_warnings
 from jointwave.compare.engines import applies, solve
@@ -48,7 +47,8 @@ class SceneFile(pytest.File):
         reasons: dict[str, list[str]] = {}
         for scene in scenes:
             for key, most in scene.expect.items():
-                reason = _reason(key, scene)
+                answers = {name: applies(name, scene) for name in bound_of(key)[:2]}
+                reason = "; ".join(f"{name}: {a.reason}" for name, a in answers.items() if not a)
                 reasons.setdefault(key, []).append(reason)
                 if not reason:
                     name = f"{scene.name}: {key}" if scene.name else key
@@ -106,9 +106,3 @@ class PairItem(pytest.Item):
     def reportinfo(self) -> tuple[Path, None, str]:
         """Return the location of the test."""
         return self.path, None, self.name
-
-
-def _reason(key: str, scene: AnyScene) -> str:
-    """Return why a key does not apply to a variant; "" if it does."""
-    answers = {name: applies(name, scene) for name in bound_of(key)[:2]}
-    return "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items() if not answer)

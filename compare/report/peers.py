@@ -56,7 +56,11 @@ def summarise(found: pd.DataFrame, folder: Path) -> Summary:
     failed = [f"{one.curve} ({one.solves}): {one.message}" for one in missing.itertuples()]
     machine = "; ".join(dict.fromkeys(filter(None, found.machine))) or "an unnamed machine"
     figure = save(_draw(done), folder, "peers", TITLE, found)
-    shown = _table(done), sentences(done), failed, figure.drawings
+    point = done.settings.str.replace(r'[{}"]', "", regex=True).str.replace("_", " ")
+    table = done[list(NUMBERS)].rename(columns=NUMBERS)
+    table[["own model (%)", "finest physics (%)"]] *= 100
+    table = table.set_index([(done.curve + ": " + done.solves).rename("curve"), point])
+    shown = table, sentences(done), failed, figure.drawings
     return Summary("peers", TITLE, *shown, figure=figure, legend=LEGEND, about=machine)
 
 
@@ -69,13 +73,6 @@ def sentences(done: pd.DataFrame) -> list[str]:
         for curve, rows in groups
     ]
     return said or ["No other code ran: there is nothing to compare with."]
-
-
-def _table(done: pd.DataFrame) -> pd.DataFrame:
-    point = done.settings.str.replace(r'[{}"]', "", regex=True).str.replace("_", " ")
-    shown = done[list(NUMBERS)].rename(columns=NUMBERS)
-    shown[["own model (%)", "finest physics (%)"]] *= 100
-    return shown.set_index([(done.curve + ": " + done.solves).rename("curve"), point])
 
 
 def _draw(done: pd.DataFrame) -> Figure:

@@ -82,7 +82,11 @@ def body_of(s: Snapshots, settings: ViewSettings) -> Body:
     quantity, speed = settings.quantity, np.linalg.norm(s.velocity, axis=2)
     if quantity in (STRESS, PRINCIPAL):
         assert s.stress is not None
-        values = (s.stress if s.stress.ndim == 2 else _principal(s.stress))[:, cells]
+        values = s.stress
+        if values.ndim > 2:  # the principal stress of larger size
+            low, high = np.moveaxis(np.linalg.eigvalsh(tensors(values))[..., [0, -1]], -1, 0)
+            values = np.where(-low > high, low, high)
+        values = values[:, cells]
     elif quantity == VELOCITY:
         values = (s.velocity @ settings.up)[:, faces].mean(axis=2)
     else:
@@ -90,16 +94,6 @@ def body_of(s: Snapshots, settings: ViewSettings) -> Body:
         values = speed[:, faces].mean(axis=2)
     motion = settings.scale * thick * (s.displacement @ axes)
     return Body(thick * (s.points @ axes), motion, faces, quantity.factor * values, s.block[cells])
-
-
-def _principal(stress: np.ndarray) -> np.ndarray:
-    """Return the principal stress of larger size of stresses [..., components]."""
-    if stress.shape[-1] == 6:
-        low, _, high = np.moveaxis(np.linalg.eigvalsh(tensors(stress)), -1, 0)
-        return np.where(-low > high, low, high)
-    xx, yy, xy = np.moveaxis(stress, -1, 0)
-    middle = (xx + yy) / 2
-    return middle + np.where(middle < 0, -1.0, 1.0) * np.hypot((xx - yy) / 2, xy)
 
 
 def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:

@@ -45,13 +45,11 @@ def scene_figure(name: str, comparisons: list[Comparison], explode: float = 0.0)
         scene, sketch = comparison.scene, sketch_of(comparison.scene, explode)
         seen = f"{[getattr(scene, key, None) for key in SEEN]} {sketch.table().to_csv()}"
         groups.setdefault(seen, ([], scene, sketch))[0].append(words)
-    few = list(groups.values())[:MOST]
-    scenes = {", ".join(names): scene for names, scene, _ in few}
-    sketches = [sketch for *_, sketch in few]
-    numbers = pd.concat(dict(zip(scenes, (one.table() for one in sketches), strict=True)))
+    few = {", ".join(names): (scene, sketch) for names, scene, sketch in groups.values()}
+    few = dict(list(few.items())[:MOST])
+    numbers = pd.concat({words: sketch.table() for words, (_, sketch) in few.items()})
     numbers = numbers.rename_axis(["variant", None]).reset_index("variant").reset_index(drop=True)
-    figure = _figure(scenes, sketches)
-    return SceneFigure(f"{name}-scene", TITLE, CAPTION, figure, numbers)
+    return SceneFigure(f"{name}-scene", TITLE, CAPTION, _figure(few), numbers)
 
 
 def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
@@ -59,8 +57,9 @@ def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
     return space.sketch_of(scene, explode) if scene.in_space else plane.sketch_of(scene)
 
 
-def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
+def _figure(scenes: dict[str, tuple[AnyScene, Sketch]]) -> Figure:
     """Draw flat scenes one below the other, others in pairs, each with its pulse beside it."""
+    sketches = [sketch for _, sketch in scenes.values()]
     pairs = 1 if len(scenes) == 1 or sketches[0].ratio < FLAT else 2
     rows = [sketches[k : k + pairs] for k in range(0, len(sketches), pairs)]
     width = WIDTH / pairs - PULSE - 0.9
@@ -71,8 +70,8 @@ def _figure(scenes: dict[str, AnyScene], sketches: list[Sketch]) -> Figure:
         shape: dict[str, Any] = {"width_ratios": [width, PULSE] * pairs, "height_ratios": heights}
         axes = figure.subplots(len(rows), 2 * pairs, squeeze=False, **shape).reshape(-1, 2)
         handles: dict[str, Any] = {}
-        for k, ((ax, beside), sketch) in enumerate(zip(axes, sketches, strict=False)):
-            words, scene = list(scenes.items())[k]
+        for k, (words, (scene, sketch)) in enumerate(scenes.items()):
+            ax, beside = axes[k]
             sketch.draw(ax)
             if len(scenes) > 1:
                 ax.set_title(f"({chr(97 + k)})  {words}")
@@ -98,8 +97,7 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
     kind = getattr(pulse, "kind", "load")
     words = f"{kind} wave" if kind in ("P", "S") else kind
     title = fill(f"{words}, {pulse.shape} ({unit.name})", LETTERS)
-    ax.set(xlabel="time (ms)", title=title)
-    ax.set(anchor="SW", box_aspect=0.6)
+    ax.set(xlabel="time (ms)", title=title, anchor="SW", box_aspect=0.6)
 
 
 def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
