@@ -79,15 +79,12 @@ def explanation(scene: AnyScene) -> Facts:
     if errors and not runs:
         raise next(iter(errors.values()))
     if scene.is_column:
-        about = _pillar(scene)
+        about: Facts = {"segments": _segments(scene)}
     else:
         found = {name: speeds(scene, ENGINES[name].rock) for name in runs}
         about = block_summary(scene) | {"speeds": found}
-    limits = {
-        name: limiting(name, ENGINES[name].model, scene)
-        for name, run in runs.items()
-        if run.scheme != "implicit"
-    }
+    explicit = [name for name, run in runs.items() if run.scheme != "implicit"]
+    limits = {name: limiting(name, ENGINES[name].model, scene) for name in explicit}
     references = {name: reference_of(name, able, scene) or UNCHECKED for name in engines}
     return {
         "title": scene.title,
@@ -106,13 +103,13 @@ def explanation(scene: AnyScene) -> Facts:
     }
 
 
-def _pillar(scene: Scene) -> Facts:
+def _segments(scene: Scene) -> list[Facts]:
     """Return the rock of each segment of a pillar, with the long-wave stress 2 Z2 / (Z1 + Z2) that
     it takes from the one before."""
     p = calibrate(scene)
     each = [one.at_rest for one in p.each]
     ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
-    segments = [
+    return [
         {
             "from": start,
             "to": stop,
@@ -130,47 +127,38 @@ def _pillar(scene: Scene) -> Facts:
         }
         for (start, stop), one, other in zip(pairwise(ends), each, [None, *each], strict=False)
     ]
-    return {"segments": segments}
 
 
 def show_explanation(found: Facts, every: bool) -> None:
     """Print the facts of a scene; every : also effects and solutions that it has not, and why."""
     say(f"{found['title']} {found['variant']}".rstrip(), "bold")
     facts = {key: value for key, value in found.items() if key not in APART}
-    if speeds := {label_of(name): one for name, one in found.get("speeds", {}).items()}:
-        facts["speeds"] = speeds
+    if "speeds" in facts:
+        facts["speeds"] = {label_of(name): one for name, one in facts["speeds"].items()}
     show_facts(facts, LABELS)
     effects = [{"effect": name, **one} for name, one in found["effects"].items()]
     _show("effects are not active", effects, "active", every)
-    steps = [
-        {
-            "engine": label_of(run["engine"]),
-            "step": in_seconds(run["dt"]),
-            "critical_step": in_seconds(run["critical"]) if run["critical"] else None,
-            "steps": run["steps"],
-            "memory": spoken(run["bytes"]),
-        }
-        for run in found["steps"]
-    ]
     say("")
-    show_facts({"steps": steps})
+    table = []
+    for run in found["steps"]:
+        critical = in_seconds(run["critical"]) if run["critical"] else None
+        row: Facts = {"engine": label_of(run["engine"]), "step": in_seconds(run["dt"])}
+        row |= {"critical_step": critical, "steps": run["steps"], "memory": spoken(run["bytes"])}
+        table.append(row)
+    show_facts({"steps": table})
     for limit in found["limits_the_step"]:
         say(_limit(**limit))
     for name, why in found["cannot_run"].items():
         say(f"{label_of(name)} cannot run: {why}", "red")
-    solutions = {
-        name: {
-            "solution": label_of(name),
-            "applies": one["applies"],
-            "options": " ".join(options_of(name)),
-            "why_not": in_words(one["why_not"]),
-        }
+    rows = [
+        {"solution": label_of(name), "applies": one["applies"]}
+        | {"options": " ".join(options_of(name)), "why_not": in_words(one["why_not"])}
         for name, one in found["solutions"].items()
-    }
-    _show("solutions do not apply", [*solutions.values()], "applies", every)
-    for name, one in solutions.items():
-        if name in ENGINES and not (every or one["applies"]):
-            say(f"not by {one['solution']}: {one['why_not']}", "dim")
+    ]
+    _show("solutions do not apply", rows, "applies", every)
+    for name in ENGINES if not every else ():
+        if (one := found["solutions"].get(name)) and not one["applies"]:
+            say(f"not by {label_of(name)}: {in_words(one['why_not'])}", "dim")
     for name, reference in found["references"].items():
         by, why = label_of(reference["name"]), reference["reason"]
         say(f"reference of {label_of(name)}: {f'{by} ({why})' if by else why}")

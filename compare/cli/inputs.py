@@ -1,6 +1,7 @@
 """Input of the commands: scenes with changed keys, curves of others, warnings, stored results."""
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import product
 from pathlib import Path
 
 from jointwave.cases.errors import SceneError, all_of
@@ -39,10 +40,8 @@ def curves_of(
             raise SceneError("--align", "", None, "needs --with: there is no curve to align")
         return []
     curves = read_curves(given, scenes)
-    if not align:
-        for scene in scenes:
-            for one in curves:
-                common_times(one, scene)
+    for scene, one in product(scenes if not align else (), curves):
+        common_times(one, scene)
     warn(scenes, strict, lambda scene: doubts(curves, scene))
     return curves
 

@@ -7,6 +7,7 @@ imported when it is called. Help and completion thus import nothing that reads, 
 import os
 from collections.abc import Callable
 from enum import StrEnum
+from functools import partial
 from importlib.metadata import version
 from inspect import Parameter, Signature
 from pathlib import Path
@@ -125,13 +126,9 @@ def command(work: str) -> Callable[[C], C]:
             resolve_name(f"{__package__}.{work}")(of(**given))
 
         run.__doc__, run.__annotations__ = of.__doc__, get_type_hints(of, include_extras=True)
+        named = partial(Parameter, kind=Parameter.KEYWORD_ONLY)
         fields = [
-            Parameter(
-                name,
-                Parameter.KEYWORD_ONLY,
-                default=getattr(of, name, Parameter.empty),
-                annotation=hint,
-            )
+            named(name, default=getattr(of, name, Parameter.empty), annotation=hint)
             for name, hint in run.__annotations__.items()
         ]
         run.__signature__ = Signature(fields)  # type: ignore[attr-defined]

@@ -18,9 +18,8 @@ from jointwave.compare.cli.forecast import runs_of, show_forecasts
 from jointwave.compare.cli.inputs import curves_of, load, stored_in
 from jointwave.compare.cli.terminal import progress, say
 from jointwave.compare.engines import ENGINES, applies, label_of
+from jointwave.compare.figures.animation import snapshots
 from jointwave.compare.figures.animation.frame import PIXELS, Frame, open_window
-from jointwave.compare.figures.animation.settings import quantities_of, settings_for
-from jointwave.compare.figures.animation.snapshots import shown_engines, take, with_snapshots
 from jointwave.compare.figures.animation.video import write_video
 from jointwave.compare.figures.body_maps import maps_of, scene_of
 from jointwave.compare.figures.charts import waveforms
@@ -171,7 +170,7 @@ def _simulated(asked: Animate | View, scene: AnyScene, frames: int | None = None
 
     frames : how many of a film; None: as many as the scene records snapshots, else FRAMES.
     """
-    known = quantities_of(scene)
+    known = snapshots.quantities_of(scene)
     if asked.quantity is not None and asked.quantity not in known:
         allowed = f"must be one of {', '.join(known)}, not {asked.quantity}"
         raise SceneError("--map", "", None, allowed)
@@ -179,16 +178,17 @@ def _simulated(asked: Animate | View, scene: AnyScene, frames: int | None = None
     if frames is not None or scene.record.fields is None:
         interval = scene.time.duration / ((frames or FRAMES) - 1)
     if asked.dry:
-        seen = scene if interval is None else with_snapshots(scene, interval)
-        runs = runs_of(shown_engines(seen), seen, stored, "" if interval is None else SNAPSHOTS)
+        seen = scene if interval is None else snapshots.with_snapshots(scene, interval)
+        engines, suffix = snapshots.shown_engines(seen), SNAPSHOTS * (interval is not None)
+        runs = runs_of(engines, seen, stored, suffix)
         drawn = round(scene.time.duration / (seen.record.fields or inf)) + 1
         drawn *= isinstance(asked, Animate)
         show_forecasts(runs, False, {"figures": 1, "frames": drawn})
         return None
     with progress("both engines") as advance:
-        simulated = take(scene, interval, advance, stored)
+        simulated = snapshots.take(scene, interval, advance, stored)
     quantity = known[asked.quantity] if asked.quantity else None
-    return Frame(simulated, settings_for(simulated.scene, simulated.found, asked.scale, quantity))
+    return Frame(simulated, asked.scale, quantity)
 
 
 def _require_positive(key: str, value: float | None) -> None:

@@ -51,22 +51,16 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         log.addHandler(handler)
         log.setLevel(logging.INFO)
     try:
-        if _console(stderr=True).is_terminal:
-            with _bar(label) as advance:
-                yield advance
+        if (console := _console(stderr=True)).is_terminal:
+            columns = *rich.Progress.get_default_columns(), rich.TextColumn("left")
+            with rich.Progress(*columns, console=console, transient=True) as bar:
+                task = bar.add_task(escape(printable(label)), total=1.0)
+                yield lambda fraction: bar.update(task, completed=fraction)
         else:
             yield _lines(label, float(every))
     finally:
         log.setLevel(before)
         log.removeHandler(handler)
-
-
-@contextmanager
-def _bar(label: str) -> Iterator[Callable[[float], None]]:
-    columns = *rich.Progress.get_default_columns(), rich.TextColumn("left")
-    with rich.Progress(*columns, console=_console(stderr=True), transient=True) as bar:
-        task = bar.add_task(escape(printable(label)), total=1.0)
-        yield lambda fraction: bar.update(task, completed=fraction)
 
 
 def _lines(label: str, every: float) -> Callable[[float], None]:

@@ -14,15 +14,9 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import names, solver
+from jointwave.compare.figures.animation import snapshots
 from jointwave.compare.figures.animation.bodies import Body, body_of
-from jointwave.compare.figures.animation.settings import (
-    PEAK,
-    SLIP,
-    SPEED,
-    Quantity,
-    quantities_of,
-    settings_for,
-)
+from jointwave.compare.figures.animation.snapshots import Quantity
 from jointwave.compare.figures.drawing.plane import seen
 from jointwave.results.snapshots import snapshots_of
 
@@ -53,7 +47,7 @@ class Map(NamedTuple):
     @property
     def sizes(self) -> np.ndarray:
         """The areas (m2) of the faces, or lengths (m) of the joints' pieces, that have values."""
-        if self.quantity == SLIP:
+        if self.quantity == snapshots.SLIP:
             return np.linalg.norm(self.joints[:, 1] - self.joints[:, 0], axis=1)
         return shapely.area(shapely.polygons(self.corners))
 
@@ -75,8 +69,9 @@ def maps_of(
     scene: AnyScene, results: Sequence[xr.Dataset], quantity: str, time: float | None = None
 ) -> dict[str, Map]:
     """Return the maps of results of one body by their names; raises SceneError as `plot_map`."""
-    stress = quantities_of(scene)["stress"]
-    known = {"ppv": PEAK, "speed": SPEED, "stress": stress, "slip": SLIP}
+    stress = snapshots.quantities_of(scene)["stress"]
+    known = {"ppv": snapshots.PEAK, "speed": snapshots.SPEED}
+    known |= {"stress": stress, "slip": snapshots.SLIP}
     if quantity not in known:
         raise SceneError(scene.title, "map", quantity, f"must be one of {', '.join(known)}")
     if quantity == "ppv" and time is not None:
@@ -101,13 +96,13 @@ def maps_of(
 def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | None) -> Map:
     """Return the map of a result's snapshots, of the one nearest to a time."""
     s = snapshots_of(result)
-    if s is None or (s.stress is None and quantity == quantities_of(scene)["stress"]):
+    if s is None or (s.stress is None and quantity == snapshots.quantities_of(scene)["stress"]):
         why = "is needed for a map: the result has no snapshots"
         raise SceneError(scene.title, "record.fields", None, why)
-    view = settings_for(scene, {"": s})
+    view = snapshots.settings_for(scene, {"": s})
     body = body_of(s, view._replace(scale=1.0, stretch=1.0, quantity=quantity)).front()
     corners, joints, values = body.rest[body.faces][..., [0, 2]], _joints(scene), body.values
-    if quantity == SLIP:
+    if quantity == snapshots.SLIP:
         if not len(joints) or (scene.is_column and not is_spatial(scene)):
             why = "is of joints along which something moves; this body has none"
             raise SceneError(scene.title, "map", "slip", why)
@@ -122,7 +117,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
         values = quantity.factor * slip
     axes = ("y", "") if view.side else ("x", "y")
     found = Map(corners, joints, values[0], None, quantity, axes, view.stretch)
-    if quantity == PEAK:
+    if quantity == snapshots.PEAK:
         return found
     if time is None:
         i = int((values**2 @ found.sizes).argmax())
@@ -171,7 +166,7 @@ def _nearest(corners: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 def difference(one: Map, other: Map) -> Map:
     """Return the second map less the first, on the faces of the one that has more."""
-    if one.quantity == SLIP:
+    if one.quantity == snapshots.SLIP:
         return one._replace(values=other.values - one.values)
     if len(one.corners) <= len(other.corners):
         there = one.values[_nearest(one.corners, other.corners.mean(axis=1))]

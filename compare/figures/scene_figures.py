@@ -6,17 +6,12 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import ENGINES, applies, names
+from jointwave.compare.figures.charts import waveforms
 from jointwave.compare.figures.charts.energy import energy
 from jointwave.compare.figures.charts.maps import peak_velocities
 from jointwave.compare.figures.charts.propagation import propagation
 from jointwave.compare.figures.charts.spacetime import space_time
 from jointwave.compare.figures.charts.spectra import spectra
-from jointwave.compare.figures.charts.waveforms import (
-    STYLES,
-    by_solution,
-    draw_waveforms,
-    waveforms,
-)
 from jointwave.compare.figures.drawing.scene import scene_figure, sketch_of
 from jointwave.compare.figures.export import SceneFigure, blank
 from jointwave.compare.figures.receivers import Panel, table_of
@@ -44,7 +39,7 @@ def figures_of(
     return [
         scene_figure(name, comparisons),
         *peak_velocities(name, comparisons),
-        *waveforms(name, comparisons),
+        *waveforms.waveforms(name, comparisons),
         *(one._replace(folded=k > 0) for k, one in enumerate(along)),
         *spectra(name, comparisons),
         *propagation(name, comparisons),
@@ -57,13 +52,13 @@ def lead_figure(name: str, panel: Panel) -> SceneFigure:
     with blank(HEIGHT) as figure:
         left, right = figure.subplots(1, 2, width_ratios=WIDTHS)
         sketch_of(panel.comparison.scene)._replace(size="").draw(left)
-        draw_waveforms(right, by_solution(panel))
+        waveforms.draw_waveforms(right, waveforms.by_solution(panel))
         right.set_xlabel("time (ms)")
         handles = right.get_legend_handles_labels()
         figure.legend(*handles, loc="outside lower center", ncols=4, handlelength=4.0)
     title = f"{panel.comparison.scene.title}: {panel.heading}"
     table = table_of(panel.recorded.rename(columns=panel.column), "time (s)")
-    return SceneFigure(f"{name}-lead", title, STYLES, figure, table)
+    return SceneFigure(f"{name}-lead", title, waveforms.STYLES, figure, table)
 
 
 SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples

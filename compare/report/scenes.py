@@ -14,16 +14,9 @@ import pandas as pd
 from jointwave import cases
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, label_of
-from jointwave.compare.figures import tables
+from jointwave.compare.figures import scene_figures, tables
 from jointwave.compare.figures.export import Drawn, SceneFigure, save
 from jointwave.compare.figures.receivers import panels
-from jointwave.compare.figures.scene_figures import (
-    ALONG,
-    along_pillar,
-    figures_of,
-    lead_figure,
-    runs_along,
-)
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import applicable
 from jointwave.compare.report.claims import CLAIMS, Claim, joints, pillar, travel  # noqa: F401 (add theirs)
@@ -128,7 +121,7 @@ def planned(request: SceneRequest, stored: ResultFolder) -> list[Run]:
     own, found = request.own(stored), []
     for scene in load_variants(request.file):
         found += runs_of(applicable(scene), scene, own, point=request.label)
-        found += runs_of(*runs_along(scene), own, ALONG, request.label)
+        found += runs_of(*scene_figures.runs_along(scene), own, scene_figures.ALONG, request.label)
     return found
 
 
@@ -172,14 +165,14 @@ def _draw(
 ) -> tuple[Drawn | None, list[Drawn]]:
     """Return the picture at the head, a map or else the waveform that is furthest from its
     reference in the first variant, and all figures."""
-    fields = [along_pillar(one.scene, stored) for one in comparisons]
+    fields = [scene_figures.along_pillar(one.scene, stored) for one in comparisons]
     with timings.measured("pages", comparisons[0].scene.kind, len(comparisons)):
-        figures = figures_of(request.name, comparisons, fields)
+        figures = scene_figures.figures_of(request.name, comparisons, fields)
         shown = {one.name: _save(one, folder) for one in figures}
         lead = shown.get(f"{request.name}-peak-velocity-0")
         if lead is None and (moving := panels(comparisons)[0]):
             panel = max(moving, key=lambda one: one.largest_residual)
-            lead = _save(lead_figure(request.name, panel), folder)
+            lead = _save(scene_figures.lead_figure(request.name, panel), folder)
     return lead, list(shown.values())
 
 

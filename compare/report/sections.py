@@ -12,7 +12,6 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.compare.engines import Progress, label_of, solve
 from jointwave.compare.figures.animation.frame import PIXELS, Frame, draw_snapshots
-from jointwave.compare.figures.animation.settings import settings_for
 from jointwave.compare.figures.animation.snapshots import take
 from jointwave.compare.figures.animation.video import write_video
 from jointwave.compare.figures.export import save
@@ -121,7 +120,7 @@ def film(out: Path) -> dict[str, Any]:
         f"{label_of(name)}: {percent(misfit(result, exact), 2)} % from the {label_of(EXACT)}"
         for name, result in simulated.results.items()
     ]
-    frame = Frame(simulated, settings_for(simulated.scene, simulated.found))
+    frame = Frame(simulated)
     images = (frame.image(i) for i in range(FRAMES))
     file = write_video(out / "figures" / "sliding-joint.gif", images, PIXELS, RATE)
     note = (

@@ -9,12 +9,7 @@ import pandas as pd
 from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.variants import named
-from jointwave.compare.misfit.differences import (
-    PeakDifference,
-    distance_of,
-    peak_differences,
-    static_difference,
-)
+from jointwave.compare.misfit import differences
 from jointwave.compare.misfit.metrics import Worst, worst
 from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 from jointwave.compare.misfit.ranking import kind_of, own_exact, reference_of
@@ -60,7 +55,7 @@ class VariantScore(NamedTuple):
     reason: str
     broken: tuple[str, ...]
     meaning: str = ""
-    peaks: Mapping[str, PeakDifference] = {}
+    peaks: Mapping[str, differences.PeakDifference] = {}
     static: Worst = Worst(0.0)
 
     @property
@@ -86,7 +81,7 @@ class VariantScore(NamedTuple):
         peaks = {
             f"{short}_{part}": getattr(self.peaks.get(name), part, None)
             for name, short in ((PPV, "ppv"), (PEAK_STRESS, "peak_stress"))
-            for part in PeakDifference._fields
+            for part in differences.PeakDifference._fields
         }
         return {
             "misfit": self.total.misfit,
@@ -178,8 +173,8 @@ def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScor
         return found
     return found._replace(
         meaning=kind_of(engine, against, scene).words,
-        peaks=peak_differences(results[engine], results[against]),
-        static=static_difference(results[engine], results[against]),
+        peaks=differences.peak_differences(results[engine], results[against]),
+        static=differences.static_difference(results[engine], results[against]),
     )
 
 
@@ -197,5 +192,6 @@ def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
         bound = bound_of(key)
         if bound.one != engine or bound.other not in results:
             continue
-        if not distance_of(bound.of, results[engine], results[bound.other]).judged <= most:
+        found = differences.distance_of(bound.of, results[engine], results[bound.other])
+        if not found.judged <= most:
             yield key

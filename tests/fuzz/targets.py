@@ -136,7 +136,7 @@ SOLVERS = (
     "jointwave.compare.studies.plan.plan",
     "jointwave.compare.report.report.build",
     "jointwave.compare.runs.comparison.solved",
-    "jointwave.compare.cli.pictures.take",
+    "jointwave.compare.figures.animation.snapshots.take",
     "jointwave.compare.cli.explain.explanation",
     "jointwave.compare.cli.doctor.examine",
 )

@@ -12,13 +12,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 
-from jointwave.compare.figures.animation.settings import (
-    PEAK,
-    PRINCIPAL,
-    STRESS,
-    VELOCITY,
-    ViewSettings,
-)
+from jointwave.compare.figures.animation import snapshots
 from jointwave.compare.figures.style import FIELD, UNSIGNED
 from jointwave.results.snapshots import Snapshots
 from jointwave.results.stress import tensors
@@ -72,7 +66,7 @@ class Body(NamedTuple):
         return values.groupby(along.round(9)).mean().T
 
 
-def body_of(s: Snapshots, settings: ViewSettings) -> Body:
+def body_of(s: Snapshots, settings: snapshots.ViewSettings) -> Body:
     """Return the body of snapshots; lines and sheets of a pillar have its thickness."""
     if settings.side:
         s = _solid(s, settings.side)
@@ -80,17 +74,17 @@ def body_of(s: Snapshots, settings: ViewSettings) -> Body:
     thick = np.array([1.0, settings.stretch, settings.stretch])
     faces, cells = _outside(s)
     quantity, speed = settings.quantity, np.linalg.norm(s.velocity, axis=2)
-    if quantity in (STRESS, PRINCIPAL):
+    if quantity in (snapshots.STRESS, snapshots.PRINCIPAL):
         assert s.stress is not None
         values = s.stress
         if values.ndim > 2:  # the principal stress of larger size
             low, high = np.moveaxis(np.linalg.eigvalsh(tensors(values))[..., [0, -1]], -1, 0)
             values = np.where(-low > high, low, high)
         values = values[:, cells]
-    elif quantity == VELOCITY:
+    elif quantity == snapshots.VELOCITY:
         values = (s.velocity @ settings.up)[:, faces].mean(axis=2)
     else:
-        speed = speed.max(axis=0, keepdims=True) if quantity == PEAK else speed
+        speed = speed.max(axis=0, keepdims=True) if quantity == snapshots.PEAK else speed
         values = speed[:, faces].mean(axis=2)
     motion = settings.scale * thick * (s.displacement @ axes)
     return Body(thick * (s.points @ axes), motion, faces, quantity.factor * values, s.block[cells])

@@ -13,14 +13,7 @@ from matplotlib.lines import Line2D
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import label_of
-from jointwave.compare.figures.animation import bodies
-from jointwave.compare.figures.animation.settings import (
-    PRINCIPAL,
-    STRESS,
-    ViewSettings,
-    settings_for,
-)
-from jointwave.compare.figures.animation.snapshots import SceneSnapshots
+from jointwave.compare.figures.animation import bodies, snapshots
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.style import RC, UNITS, style, unit_for
@@ -36,11 +29,20 @@ HEAD, STRIP = 0.7, 0.95  # inches above snapshots, and of a pillar
 
 class Frame:
     """The frame of every instant: of a pillar with the wave along it and a waveform, of a rock mass
-    its bodies side by side."""
+    its bodies side by side.
 
-    def __init__(self, simulated: SceneSnapshots, settings: ViewSettings) -> None:
-        self.simulated, self.settings, self.time = simulated, settings, simulated.time
+    scale, quantity : see `settings_for`.
+    """
+
+    def __init__(
+        self,
+        simulated: snapshots.SceneSnapshots,
+        scale: float | None = None,
+        quantity: snapshots.Quantity | None = None,
+    ) -> None:
+        self.simulated, self.time = simulated, simulated.time
         scene, found = simulated.scene, simulated.found
+        self.settings = settings = snapshots.settings_for(scene, found, scale, quantity)
         self.bodies = {name: bodies.body_of(s, settings) for name, s in found.items()}
         values = [body.values for body in self.bodies.values()]
         self.colours, beyond = bodies.colours_of(values, settings.quantity.sign)
@@ -98,7 +100,7 @@ class Frame:
     def _title(self) -> list[str]:
         """Return the lines of the title: the scene, how it is drawn, and what does not apply."""
         scene, caption = self.simulated.scene, self.settings.caption
-        stress = self.settings.quantity in (STRESS, PRINCIPAL)
+        stress = self.settings.quantity in (snapshots.STRESS, snapshots.PRINCIPAL)
         if stress and (scene.gravity or scene.prestress):
             caption += ", stress change from the static state"
         missing = [
@@ -157,7 +159,7 @@ def draw_snapshots(name: str, scene: AnyScene, s: Snapshots) -> Figure:
 
     The pillar of instant i is the SVG group NAME-i.
     """
-    settings = settings_for(scene, {"": s})
+    settings = snapshots.settings_for(scene, {"": s})
     body = bodies.body_of(s, settings)
     colours, _ = bodies.colours_of([body.values], settings.quantity.sign)
     with blank(HEAD + STRIP * len(s.time)) as figure:

@@ -1,12 +1,16 @@
-"""Both engines' snapshots of one scene, at the instants of a picture or an animation."""
+"""Both engines' snapshots of one scene, at the instants of a picture or an animation, and the
+settings that show them: direction, exaggeration, and the quantity of the colours."""
 
-from math import ceil
+from math import ceil, floor, log10
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
+from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.validate import checked
 from jointwave.compare.engines import ENGINES, Progress, applies
@@ -14,6 +18,14 @@ from jointwave.compare.figures.style import UNITS
 from jointwave.compare.misfit.metrics import motion
 from jointwave.compare.runs.reuse import NOWHERE, SNAPSHOTS, ResultFolder
 from jointwave.results.snapshots import Snapshots, snapshots_of
+
+#: Limits of drawn displacements: of any over the size of the scene; approach of two neighbours over
+#: the block's thickness; motion of a corner with respect to its cell over half the block's size.
+FARTHEST, CLOSER, TURNED = 0.04, 0.8, 0.35
+THIN = 0.045  # smallest legible ratio of the pillar's height to its length
+SILENT = 0.1  # axial stress over that of a plane wave of this motion: below it no axial wave
+DEGENERATE = 1.01  # ratio of the squared motions across the axis below which neither prevails
+X, Y, Z = np.eye(3)
 
 
 class SceneSnapshots(NamedTuple):
@@ -76,3 +88,102 @@ def with_snapshots(scene: AnyScene, interval: float) -> AnyScene:
     between = interval / max(1, ceil(interval / scene.interval - 1e-9))
     record = scene.record.model_copy(update={"fields": interval, "interval": between})
     return checked(scene.model_copy(update={"record": record}))
+
+
+class Quantity(NamedTuple):
+    """The quantity of the colours with its unit, the factor from SI to it, and the meaning of its
+    sign, "" if unsigned."""
+
+    name: str
+    factor: float = 1.0
+    sign: str = ""
+
+    @property
+    def label(self) -> str:
+        """The title of the colour bar."""
+        return ", ".join(part for part in (self.name, self.sign) if part)
+
+
+STRESS = Quantity("axial stress (MPa)", 1e-6, "compression positive")
+VELOCITY = Quantity("velocity across (m/s)", 1.0, "upwards positive")
+SPEED = Quantity("particle speed (m/s)")
+PEAK = Quantity("peak particle velocity (m/s)")
+PRINCIPAL = Quantity("larger principal stress (MPa)", 1e-6, "compression positive")
+SLIP = Quantity("slip of joints (mm)", 1e3)
+
+
+class ViewSettings(NamedTuple):
+    """Settings for drawing a scene.
+
+    up, right : unit vectors [3] of the picture: y of a pillar is to the right, x of a rock mass.
+    scale : of the displacements. stretch : of the thickness as seen. quantity : shown by the
+    colours. side : of the section of a pillar, m, which its lines and sheets are drawn with.
+    """
+
+    up: np.ndarray
+    scale: float
+    stretch: float
+    quantity: Quantity
+    right: np.ndarray = X
+    side: float = 0.0
+
+    @property
+    def caption(self) -> str:
+        """The exaggeration, in words."""
+        thicker = f", thickness × {self.stretch:.2g}" * (self.stretch != 1)
+        return f"displacements × {self.scale:,g}{thicker}"
+
+
+def quantities_of(scene: AnyScene) -> dict[str, Quantity]:
+    """Return what the colours can show of a pillar or of a rock mass, by name; the stress of a
+    pillar is that along it."""
+    if scene.is_column:
+        return {"stress": STRESS, "speed": SPEED, "across": VELOCITY}
+    return {"speed": SPEED, "stress": PRINCIPAL}
+
+
+def settings_for(
+    scene: AnyScene,
+    found: dict[str, Snapshots],
+    scale: float | None = None,
+    quantity: Quantity | None = None,
+) -> ViewSettings:
+    """Return the view settings for snapshots by engine.
+
+    scale, quantity : of displacements and of the colours, instead of ours. A pillar is seen so that
+    most of its motion across the axis is upwards, a rock mass in its plane or, in space, from the
+    south.
+    """
+    up, stretch = Z if scene.in_space else Y, 1.0
+    if scene.is_column:  # a thin one is drawn thicker
+        stretch = max(1.0, THIN * scene.pillar.length / scene.pillar.side)
+    largest = min(_largest_scale(scene, s, stretch) for s in found.values())
+    steps = 10.0 ** floor(log10(largest)) * np.array([1, 2, 5])  # rounded down to one of them
+    rounded = float(steps[steps <= largest * (1 + 1e-12)].max())
+    view = ViewSettings(up, scale or max(1.0, rounded), stretch, quantity or SPEED)
+    if not scene.is_column:
+        return view
+    across = next(iter(found.values())).displacement[..., [0, 2]].reshape(-1, 2)
+    squares, axes = np.linalg.eigh(across.T @ across)
+    x, z = axes[:, 1] if squares[1] > DEGENERATE * squares[0] else (1.0, 0.0)  # else x
+    up, plane = np.array([x, 0.0, z]) * np.sign(x + z or 1.0), calibrate(scene).impedance
+    silent = is_spatial(scene) and any(  # then the wave is transverse
+        s.stress is None or np.abs(s.stress).max() < SILENT * plane * np.abs(s.velocity).max()
+        for s in found.values()
+    )
+    ours = quantity or (VELOCITY if silent else STRESS)
+    return view._replace(up=up, right=Y, quantity=ours, side=scene.pillar.side)
+
+
+def _largest_scale(scene: AnyScene, s: Snapshots, stretch: float) -> float:
+    """Return the largest exaggeration of displacements that keeps a scene recognisable."""
+    moved = float(np.abs(s.displacement).max(axis=(0, 1)) @ [stretch, 1.0, stretch])
+    limits = [(FARTHEST * float(np.ptp(s.points, axis=0).max()), moved)]
+    if scene.is_column:
+        p = calibrate(scene)
+        along = pd.DataFrame(s.displacement[:, s.cells, 1].mean(axis=2).T).groupby(s.block).mean()
+        limits.append((CLOSER * p.spacing, -float(along.diff().min().min())))
+        corners = (u[s.cells] for u in s.displacement)
+        turned = [np.linalg.norm(u - u.mean(axis=1, keepdims=True), axis=2).max() for u in corners]
+        limits.append((TURNED * max(p.spacing, p.side) / 2, float(max(turned))))
+    return min((most / found for most, found in limits if found > 0), default=1.0)

@@ -17,7 +17,7 @@ from jointwave.cases.errors import require
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import in_order
 from jointwave.compare.figures.animation.bodies import colours_of
-from jointwave.compare.figures.animation.settings import SLIP
+from jointwave.compare.figures.animation.snapshots import SLIP
 from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_of
 from jointwave.compare.figures.charts.axes import LETTER
 from jointwave.compare.figures.drawing.sketch import MANY, ROCKS

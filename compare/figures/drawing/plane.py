@@ -18,7 +18,6 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.figures.drawing import sketch
 from jointwave.compare.figures.drawing.sketch import EDGE, INK, SETS, Sketch
-from jointwave.compare.figures.drawing.surroundings import surroundings
 from jointwave.compare.figures.style import in_unit
 
 THIN, THICK = 0.07, 0.12  # limits of the pillar's thickness over the width of the drawing
@@ -89,8 +88,8 @@ def _of_pillar(scene: Scene) -> Sketch:
     corner = np.array([pillar.length, half + 0.7 * unit[1]])
     if scene.gravity is not None:
         down = np.array(scene.gravity.direction)[[1, 0]]
-        tip, size = corner + 0.3 * unit * down, 0.6 * unit
-        shapes += sketch.gravity(tip, down, size, scene.gravity.acceleration)
+        tip, long = corner + 0.3 * unit * down, 0.6 * unit
+        shapes += sketch.gravity(tip, down, long, scene.gravity.acceleration)
     if scene.prestress is not None and scene.prestress.normal:
         words = f"prestress {in_unit(scene.prestress.normal, 'Pa')}"
         shapes.append(sketch.note(corner * [0.5, 1.0], words, "center"))
@@ -151,6 +150,6 @@ def _of_rock_mass(scene: RockMass) -> Sketch:
         few = ", ".join(f"[{x:g}, {y:g}]" for x, y in places[:FEW])
         listed = f"{name} {few} m" if len(places) <= FEW else f"{len(places)} {name}"
         words += f"\n{listed}" if places else ""
-    shapes += surroundings(scene, domain, np.eye(2), size)
+    shapes += sketch.surroundings(scene, domain, np.eye(2), size)
     margin = OVER * np.maximum(high - low, size)
     return Sketch(shapes, low - margin, high + margin, ("x", "y"), size=words)

@@ -13,8 +13,15 @@ from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.figures.drawing.sketch import INK, ROCKS, SETS, Sketch, lines, note
-from jointwave.compare.figures.drawing.surroundings import surroundings
+from jointwave.compare.figures.drawing.sketch import (
+    INK,
+    ROCKS,
+    SETS,
+    Sketch,
+    lines,
+    note,
+    surroundings,
+)
 
 TURN, RISE = np.radians([28.0, 24.0])  # of the viewer from the front to the right, and up
 RIGHT = np.array([np.cos(TURN), np.sin(TURN), 0.0])

@@ -7,15 +7,10 @@ from matplotlib.text import Text
 from jointwave.cases.read import load_tables
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation.frame import Frame, draw_snapshots
-from jointwave.compare.figures.animation.settings import settings_for
-from jointwave.compare.figures.animation.snapshots import SceneSnapshots
+from jointwave.compare.figures.animation.snapshots import SceneSnapshots, settings_for
 from jointwave.compare.figures.export import save
 from jointwave.compare.figures.style import style
 from jointwave.results.snapshots import snapshots
-
-
-def frame_of(taken, scale=None):
-    return Frame(taken, settings_for(taken.scene, taken.found, scale))
 
 
 def words(frame):
@@ -24,7 +19,7 @@ def words(frame):
 
 @pytest.fixture(scope="module")
 def frame(simulated):
-    return frame_of(simulated())
+    return Frame(simulated())
 
 
 def test_blocks_of_both_engines_are_drawn_where_they_are_in_their_colours(frame):
@@ -61,9 +56,7 @@ def test_a_title_of_any_length_is_whole(simulated, collisions, title):
     taken = simulated()
     scene = taken.scene.model_copy(update={"title": title.strip()})
     reasons = {"continuum-jointed": "it costs $1 or $2 " * 10}
-    frame = frame_of(
-        taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons)
-    )
+    frame = Frame(taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons))
     frame.show(40)
     assert collisions(frame.figure) == [] and list(frame.views) == ["dem"]
     said = words(frame).replace("\n", "").replace(" ", "")
@@ -73,7 +66,7 @@ def test_a_title_of_any_length_is_whole(simulated, collisions, title):
 def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(simulated):
     """Six frames miss the wave's peaks; the samples between them are drawn all the same."""
     taken = simulated(6)
-    frame = frame_of(taken)
+    frame = Frame(taken)
     label = next(iter(frame.traces.values())).axes.get_ylabel()
     size = {"stress\n(MPa)": 1e6, "stress\n(kPa)": 1e3}[label]
     for i in (0, 3, 5):
@@ -91,7 +84,7 @@ def test_a_pillar_at_rest_is_drawn(simulated):
         n: s._replace(displacement=0 * s.displacement, stress=0 * s.stress)
         for n, s in taken.found.items()
     }
-    assert frame_of(taken._replace(found=still)).image(20).std() > 0
+    assert Frame(taken._replace(found=still)).image(20).std() > 0
 
 
 TURN = 0.1  # rad
@@ -149,7 +142,7 @@ def test_cells_are_displaced_and_coloured_by_their_speed(squares):
     """Displacements as they can be seen: 4 % of 2 m over 1e-4 m is 800; of 1, 2, 5 times a power of
     ten at most that is 500."""
     assert settings_for(squares.scene, squares.found).scale == 500
-    frame = frame_of(squares, 1000.0)
+    frame = Frame(squares, 1000.0)
     frame.show(1)
     assert "t = 10 ms" in frame.clock.get_text()
     body = frame.bodies["dem"]

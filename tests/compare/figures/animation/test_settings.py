@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.compare.figures.animation.settings import STRESS, VELOCITY, settings_for
+from jointwave.compare.figures.animation.snapshots import STRESS, VELOCITY, settings_for
 
 IN_SPACE = {"load__direction": [1.0, 0.0, 0.0]}
 LONG = {"pillar__length": 30.0}
