@@ -10,6 +10,7 @@ from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES
 from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit import differences
+from jointwave.compare.misfit.differences import PeakDifference
 from jointwave.compare.misfit.metrics import Worst, worst
 from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 from jointwave.compare.misfit.ranking import kind_of, own_exact, reference_of
@@ -55,7 +56,7 @@ class VariantScore(NamedTuple):
     reason: str
     broken: tuple[str, ...]
     meaning: str = ""
-    peaks: Mapping[str, differences.PeakDifference] = {}
+    peaks: Mapping[str, PeakDifference] = {}
     static: Worst = Worst(0.0)
 
     @property
@@ -81,7 +82,7 @@ class VariantScore(NamedTuple):
         peaks = {
             f"{short}_{part}": getattr(self.peaks.get(name), part, None)
             for name, short in ((PPV, "ppv"), (PEAK_STRESS, "peak_stress"))
-            for part in differences.PeakDifference._fields
+            for part in PeakDifference._fields
         }
         return {
             "misfit": self.total.misfit,

@@ -26,24 +26,14 @@ CAPTION = (
 
 
 class Diagram(NamedTuple):
-    """One diagram: its name and its values [places, times] in `unit`; `share` : of a difference,
-    the largest over the largest value of what it is taken from."""
+    """One diagram: its name, a heading with the unit and the range or the size of a difference, its
+    values [places, times] in `unit`, and its colour map."""
 
     name: str
+    heading: str
     values: np.ndarray
     unit: Unit
-    share: float | None = None
-
-    @property
-    def heading(self) -> str:
-        """Name and unit, and in the last line the range, or the size of a difference."""
-        if self.share is None:
-            inner = self.values[1:-1]  # the ends' stress is that of the load
-            least, most = (f"{x + 0.0:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
-            return f"{self.name}\n({self.unit.name})\nbetween the ends {least} to {most}"
-        one, other = self.name.split(" − ")
-        share = f"at most {100 * self.share:.2g} % of the largest"
-        return f"{one}\n− {other} ({self.unit.name})\n{share}"
+    colours: str
 
 
 def space_time(
@@ -66,13 +56,21 @@ def space_time(
         return []
 
     def diagram(one: str, other: str = "") -> Diagram:
-        shown, share = values[one], None
-        if other:
-            shown, scale = shown - values[other], float(np.abs(values[other]).max())
-            share = float(np.abs(shown).max()) / scale if scale else 0.0
-        unit = unit_for(UNITS[quantity], float(np.abs(shown).max()))
-        name = " − ".join(map(label_of, filter(None, (one, other))))
-        return Diagram(name, shown / unit.size, unit, share)
+        """Return the motion by one solution, or less that by another one."""
+        shown = values[one] - values[other] if other else values[one]
+        largest = float(np.abs(shown).max())
+        unit = unit_for(UNITS[quantity], largest)
+        shown = shown / unit.size
+        if not other:
+            inner = shown[1:-1]  # the ends' stress is that of the load
+            least, most = (f"{x + 0.0:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
+            size = f"\n({unit.name})\nbetween the ends {least} to {most}"
+            return Diagram(label_of(one), label_of(one) + size, shown, unit, FIELD)
+        scale = float(np.abs(values[other]).max())
+        size = f"at most {100 * largest / scale if scale else 0.0:.2g} % of the largest"
+        heading = f"{label_of(one)}\n− {label_of(other)} ({unit.name})\n{size}"
+        name = f"{label_of(one)} − {label_of(other)}"
+        return Diagram(name, heading, shown, unit, DIFFERENCE)
 
     between = [diagram(p.one, p.other) for p in pairs() if {p.one, p.other} <= set(engines)]
     errors = [diagram(n, own) for n in engines if (own := own_exact(n, fields, scene))]
@@ -99,7 +97,7 @@ def _figure(
                 *(ms, y, diagram.values),
                 vmin=-limit,
                 vmax=limit,
-                cmap=FIELD if diagram.share is None else DIFFERENCE,
+                cmap=diagram.colours,
                 shading="nearest",  # a smooth image takes four times the bytes
                 rasterized=True,
             )

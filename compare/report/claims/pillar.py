@@ -74,8 +74,10 @@ def falls_with_damping(comparisons: list[Comparison]) -> tuple[str, bool]:
 @claim("large damping: broader", 6)
 def broader(comparisons: list[Comparison]) -> tuple[str, bool]:
     """The larger the damping ratio, the longer the pulse's mean period."""
-    dt = waves.sampling(waves.waveforms(comparisons[0], "stress"))
-    found = _of_first_pass(comparisons, lambda wave: 1e3 * mean_period(wave.values, dt))
+    found = _of_first_pass(
+        comparisons,
+        lambda wave: 1e3 * mean_period(wave.values, float(wave.index[1] - wave.index[0])),
+    )
     variants = ", ".join(variant_names(comparisons))
     return f"Mean period of the pulse in ms, {variants}: {listed(found, '.2f')}.", falls(-found)
 

@@ -42,12 +42,8 @@ def by_engine(
 
 def delays(one: pd.DataFrame, other: pd.DataFrame) -> pd.Series:
     """Return by how much the first waveform of each engine is late, s."""
-    return by_engine(lambda a, b: delay(a, b, sampling(one)), one, other)
-
-
-def sampling(waves: pd.DataFrame) -> float:
-    """Return the time between samples, s."""
-    return float(waves.index[1] - waves.index[0])
+    dt = float(one.index[1] - one.index[0])
+    return by_engine(lambda a, b: delay(a, b, dt), one, other)
 
 
 def span(waves: pd.DataFrame, start: float, stop: float) -> pd.DataFrame:
