@@ -16,12 +16,11 @@ from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.joints import resolved_joints
 from jointwave.continuum.loads.forces import Loads, pushes, released, waves_of, weight_of
-from jointwave.continuum.loads.sides import bearing_sides, cells_behind, held_sides, quiet_sides
+from jointwave.continuum.loads.sides import bearing_sides, held_sides, quiet_sides
 from jointwave.continuum.receivers.points import readings_of
 from jointwave.continuum.receivers.sections import readings_of_pillar
 from jointwave.continuum.scene import SceneBody
-from jointwave.continuum.space.model import Body, Facets, directions
-from jointwave.continuum.space.own_rock import impedances_along
+from jointwave.continuum.space.model import Body, directions
 from jointwave.continuum.space.rock import layers_of
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
@@ -59,19 +58,14 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     Masses, forces and energies of a pillar in one and two dimensions are per unit area or
     thickness; `receivers.sections.extent_of` turns them into those of the pillar.
     """
-    (body, own), stress = with_law(found), None
+    (body, own), stress, other = with_law(found), None, None
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
     if scene.prestress is not None:
         stress = scene.prestress.tensor[np.ix_(directions(body), directions(body))]
-
     relaxes = mechanisms_of(scene, found.model)
-
-    def impedances(facets: Facets) -> np.ndarray:
-        """Return those of rock of a script at its reference frequency, [n, d, d], Pa s/m."""
-        which = found.of_cell[cells_behind(body, facets)]
-        unrelaxed = impedances_along([found.materials[k] for k in which], facets.normal)
-        return unrelaxed / np.sqrt(1.0 if relaxes is None else relaxes.unrelaxed)
-
+    if found.scripted:  # at its reference frequency
+        share = 1.0 if relaxes is None else relaxes.unrelaxed
+        other = [(one.stiffness / share, one.density) for one in found.materials], found.of_cell
     read: Any = readings_of_pillar if scene.is_column else readings_of
     return Problem(
         body,
@@ -82,7 +76,7 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
         alpha=scene.damping.alpha or 0.0,
         mechanisms=relaxes,
         steady=np.sum(steady, axis=0) if steady else None,
-        quiet=quiet_sides(scene, body, found.model, impedances if found.scripted else None),
+        quiet=quiet_sides(found.scene if other else scene, body, found.model, other),
         held=held_sides(scene, body),
     )
 

@@ -87,13 +87,9 @@ def slowest(scene: RockMass) -> float:
     return min(float(speeds(medium, rho, directions)[0].min()) for medium, rho in media)
 
 
-def compliance(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
-    """Return S in Kelvin's form (1/Pa), a tensor's orthogonal components: [3, 3] or [6, 6]."""
-    return sum(map(_added, sets), start=np.linalg.inv(intact(rock, dimension)))
-
-
-def _added(one: JointSet) -> np.ndarray:
-    """Return what one set adds to the compliance, in Kelvin's form."""
+def added(one: JointSet) -> np.ndarray:
+    """Return what one set adds to the compliance in Kelvin's form (1/Pa), a tensor's orthogonal
+    components: [3, 3] or [6, 6]."""
     n = one.normal
     return one.normal_compliance * opening(n) + one.shear_compliance * sliding(n)
 
@@ -122,14 +118,21 @@ def sliding(normal: np.ndarray) -> np.ndarray:
 def stiffness(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     """Return C of the effective medium in Voigt's form, Pa: [3, 3] or [6, 6]."""
     scale = _scale(dimension)
-    return np.linalg.inv(compliance(rock, sets, dimension)) / np.outer(scale, scale)
+    return with_joints(intact(rock, dimension) / np.outer(scale, scale), sets)
+
+
+def with_joints(C: np.ndarray, sets: list[JointSet]) -> np.ndarray:
+    """Return C of the effective medium of joint sets in rock of this C, both Voigt's, Pa."""
+    scale = _scale({3: 2, 6: 3}[len(C)])
+    kelvin = np.outer(scale, scale)
+    return np.linalg.inv(sum(map(added, sets), start=np.linalg.inv(C * kelvin))) / kelvin
 
 
 def joints_alone(sets: list[JointSet], dimension: int = 2) -> np.ndarray:
     """Return C of rigid bodies between joints in Voigt's form, Pa; enormous for strains that none
     of the sets takes on."""
     scale = _scale(dimension)
-    S = sum(map(_added, sets), start=np.zeros((len(scale), len(scale))))
+    S = sum(map(added, sets), start=np.zeros((len(scale), len(scale))))
     S = S + RIGID * (np.abs(S).max() or LEAST) * np.eye(len(scale))
     return np.linalg.inv(S) / np.outer(scale, scale)
 

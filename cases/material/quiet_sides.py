@@ -1,8 +1,8 @@
 """Impedances of the dashpots of quiet sides, of plane waves along their normals.
 
-They are, region by region, those of the effective medium of all joint sets that have a spacing, and
-of a pillar's bar under its prestress: rho a along the normal and rho b across it where rock has no
-such sets.
+They are, region by region, those of the effective medium of all joint sets that have a spacing,
+closed by the stress there before any load, and of a pillar's bar under its prestress: rho a along
+the normal and rho b across it where rock has no such sets.
 """
 
 from math import isfinite
@@ -11,31 +11,50 @@ import numpy as np
 
 from jointwave.cases.geometry.measure import along_and_across
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.effective_medium import compliant, impedance, stiffness
+from jointwave.cases.material.effective_medium import (
+    compliant,
+    impedance,
+    stiffness,
+    with_joints,
+)
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock_mass import initial_stress
 from jointwave.cases.partition.joints import within
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.tables import LEAN
 
+#: Rocks by their stiffness in Voigt's form (Pa) and density, and which of them each place has [m].
+Rocks = tuple[list[tuple[np.ndarray, float]], np.ndarray]
 
-def impedances(scene: AnyScene, normals: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """Return the dashpots of sides of outward normals [m, d], of rock in these regions [m]: tensors
-    [m, d, d] that make the traction of a wave along the normal from its velocity, Pa s/m."""
+
+def impedances(
+    scene: AnyScene,
+    normals: np.ndarray,
+    places: np.ndarray,
+    region: np.ndarray,
+    other: Rocks | None = None,
+) -> np.ndarray:
+    """Return the dashpots of sides of outward normals [m, d] at places [m, d], m, of rock in these
+    regions [m]: tensors [m, d, d] that make the traction of a wave along the normal from its
+    velocity, Pa s/m; other : in place of the scene's rock between the joints."""
     if scene.is_column:
         ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
         return along_and_across(normals, np.array(ends).reshape(-1, 2))
-    dim = normals.shape[1]
-    found, scenes = np.zeros((len(normals), dim, dim)), within(scene, scene.joint_sets)
-    stress = None if scene.prestress is None else scene.prestress.tensor[:dim, :dim]
-    for own in np.unique(region):
-        there, rock = region == own, elastic_rock(scenes[own].rock)
-        if sets := compliant(scenes[own].joint_sets, stress):
-            C = stiffness(rock, sets, dim)
-            found[there] = impedance(C, scenes[own].rock.density, normals[there])
-        else:
-            pair = np.array([[rock.p_impedance, rock.s_impedance]])
-            found[there] = along_and_across(normals[there], pair.repeat(there.sum(), axis=0))
+    dim, scenes = normals.shape[1], within(scene, scene.joint_sets)
+    if other is None:
+        own = [(stiffness(elastic_rock(one.rock), [], dim), one.rock.density) for one in scenes]
+        other = own, region
+    rocks, which = other
+    closes = any(one.maximum_closure for one in scene.joint_sets)
+    stress = closes * initial_stress(scene, places)
+    rows = np.column_stack([which, region, stress.reshape(-1, dim**2)])
+    _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    found = np.zeros((len(normals), dim, dim))
+    for k, at in enumerate(first):
+        there, (C, density) = group.reshape(-1) == k, rocks[which[at]]
+        sets = compliant(scenes[region[at]].joint_sets, stress[at])
+        found[there] = impedance(with_joints(C, sets), density, normals[there])
     return found
 
 

@@ -45,6 +45,21 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
     return np.array(found)
 
 
+def initial_stress(scene: RockMass, places: np.ndarray) -> np.ndarray:
+    """Return the stress before any load at places [m, d], m, compression positive, Pa [m, d, d]:
+    the prestress and, at rest, the weight of the rock above, confined."""
+    found = np.zeros((*places.shape, places.shape[1]))
+    if scene.prestress is not None:
+        found += scene.prestress.tensor
+    if scene.gravity is not None and scene.gravity.static:
+        g, rock = np.array(scene.gravity.direction), scene.rock
+        depth = places @ g - (np.array(scene.domain.corners) @ g).min()
+        side = rock.intact_poisson / (1 - rock.intact_poisson)
+        confined = side * np.eye(len(g)) + (1 - side) * np.outer(g, g)
+        found += np.multiply.outer(rock.density * scene.gravity.acceleration * depth, confined)
+    return found
+
+
 def refuse_beyond_strength(scene: AnyScene) -> None:
     """Raise SceneError where a joint opens or slides under the prestress: the scene would not start
     in equilibrium. Under weight the static state says whether it does."""

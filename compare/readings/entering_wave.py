@@ -75,10 +75,10 @@ def _of_load(scene: AnyScene, key: str, load: Any) -> Iterator[EnteringWave]:
     else:
         outline, held = shape_of(scene.domain), getattr(scene.boundaries, load.side)
         corners, out = outline.faces_of(load.side)[0]
-        inside = corners.mean(axis=0) - WITHIN * outline.size * out
-        region = region_at(scene.regions, inside[None])
+        inside = (corners.mean(axis=0) - WITHIN * outline.size * out)[None]
+        region = region_at(scene.regions, inside)
         density = rocks_of(scene)[region[0]].density
-        dashpot = impedances(scene, out[None], region)[0]
+        dashpot = impedances(scene, out[None], inside, region)[0]
         kinds = "P", "S"
     history, moved = velocity_of(load, load.amplitude), np.array(load.direction or -out)
     along, halved = (out @ moved) * out, held in ABSORBS and load.quantity != "incident-stress"

@@ -6,14 +6,13 @@ In jointed rock a matched end has half a joint in front of them, as the rock bey
 (`joints.ends`).
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.loads import base_steps
-from jointwave.cases.material.quiet_sides import borne, half_joints, impedances
+from jointwave.cases.material.quiet_sides import Rocks, borne, half_joints, impedances
 from jointwave.cases.partition.joints import region_at
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
@@ -64,23 +63,26 @@ def inside(body: Body, facets: Facets) -> np.ndarray:
     return facets.place + INSIDE * (centre[cells_behind(body, facets)] - facets.place)
 
 
-def impedances_of(scene: AnyScene, body: Body, facets: Facets) -> np.ndarray:
-    """Return the impedances of the rock behind facets, tensors [n, d, d], Pa s/m."""
-    return impedances(scene, facets.normal, region_at(scene.regions, inside(body, facets)))
+def impedances_of(
+    scene: AnyScene, body: Body, facets: Facets, other: Rocks | None = None
+) -> np.ndarray:
+    """Return the impedances of the rock behind facets, tensors [n, d, d], Pa s/m; other : rocks in
+    place of the scene's, and which of them each cell has."""
+    if other is not None:
+        other = other[0], other[1][cells_behind(body, facets)]
+    region = region_at(scene.regions, inside(body, facets))
+    return impedances(scene, facets.normal, facets.place, region, other)
 
 
 def quiet_sides(
-    scene: AnyScene,
-    body: Body,
-    model: str = "jointed",
-    of_rock: Callable[[Facets], np.ndarray] | None = None,
+    scene: AnyScene, body: Body, model: str = "jointed", other: Rocks | None = None
 ) -> Dashpots | None:
-    """Return the dashpots of sides that absorb waves, None without any; of_rock : impedances of
-    rock that is not the scene's, tensors [n, d, d], Pa s/m."""
+    """Return the dashpots of sides that absorb waves, None without any; other : of
+    `impedances_of`."""
     facets = absorbing(scene, body)
     if not len(facets.node):
         return None
-    tensors = impedances_of(scene, body, facets) if of_rock is None else of_rock(facets)
+    tensors = impedances_of(scene, body, facets, other)
     if model == "jointed" and scene.boundaries.sides("matched"):
         return _matched(scene, facets, np.einsum("nii->ni", tensors))
     node, group = np.unique(facets.node, return_inverse=True)

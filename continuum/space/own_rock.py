@@ -13,7 +13,7 @@ import ufl
 from ufl.algorithms.analysis import has_type
 
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.effective_medium import PAIRS, impedance
+from jointwave.cases.material.effective_medium import PAIRS
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Forms
@@ -146,10 +146,3 @@ def _refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None
 
 def _refuse(scene: AnyScene, why: str, key: str = "rock") -> None:
     raise SceneError(scene.where, key, None, f"rock of a script: {why}")
-
-
-def impedances_along(materials: list[Material], normal: np.ndarray) -> np.ndarray:
-    """Return the impedances of plane waves along normals [n, d], Pa s/m: of material n each,
-    tensors [n, d, d]."""
-    each = zip(materials, normal, strict=True)
-    return np.array([impedance(one.stiffness, one.density, n) for one, n in each])

@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space.fenicsx import PETSc, shared_by
 
-MOST_ITERATIONS = 12
+MOST_ITERATIONS = 20  # a joint that closes beyond d_m comes back by half of the way each
 #: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
 LARGE = 20_000
 SHARED = ("mumps", "superlu_dist")  # that factorise a matrix of several processes

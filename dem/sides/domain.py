@@ -30,7 +30,7 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
     """
     refuse_beyond_strength(scene)
     quiet = points_on(cut, facets_on(cut, sides, scene.boundaries.sides("quiet")))
-    impedance = impedances(scene, quiet.normal, cut.body.region[quiet.block])
+    impedance = impedances(scene, quiet.normal, quiet.place, cut.body.region[quiet.block])
     patterns = [load_pattern(scene, cut, sides, one) for one in scene.pushes]
     opened = None
     if scene.prestress is not None:
@@ -79,7 +79,8 @@ def load_pattern(
     points = points_on(blocks, facets, parts)
     if load.kind == "base":
         assert load.direction is not None
-        impedance = impedances(scene, points.normal, blocks.body.region[points.block])
+        regions = blocks.body.region[points.block]
+        impedance = impedances(scene, points.normal, points.place, regions)
         traction = base_traction(impedance, load.direction)
     else:
         traction = -points.normal

@@ -46,15 +46,17 @@ def alike(found, known, tolerance=1e-8):
 
 
 @pytest.mark.parametrize(
-    ("dim", "cell", "damping"),
-    [(2, "quadrilateral", {}), (2, "triangle", RAYLEIGH), (3, None, {})],
+    ("dim", "cell", "damping", "dips"),
+    [(2, "quadrilateral", {}, []), (2, "triangle", RAYLEIGH, [30.0]), (3, None, {}, [])],
 )
-def test_rock_like_the_scenes_own_gives_the_same_result(rock_mass, dim, cell, damping):
-    """Stress at points, snapshots, dashpots and quiet sides are those of the scene's rock."""
+def test_rock_like_the_scenes_own_gives_the_same_result(rock_mass, dim, cell, damping, dips):
+    """Stress at points, snapshots, dashpots and quiet sides, of jointed rock too, are those of the
+    scene's rock."""
     numerics = {} if cell is None else {"cell": cell}
     tables = {"loads": [PUSH], "boundaries": QUIET, "continuum": numerics}
     record = {"points": [[2.0, 3.0, 1.0][:dim]], "fields": 5e-4}
-    scene = rock_mass(dim=dim, record=record, damping=damping, **tables)
+    joints = [{"dip": dip, "spacing": 2.0} for dip in dips]
+    scene = rock_mass(*joints, dim=dim, record=record, damping=damping, **tables)
     known, found = simulate(scene), simulate(scene, rock=same)
     for name in ("velocity", "stress", "field_stress"):
         alike(found[name].values, known[name].values)

@@ -118,3 +118,29 @@ def test_matched_end_bears_a_row_across_its_axis(solver, static):
     leaning = run(PILLAR, solver, **changes)
     assert leaning["shear"].values[0, 0, 0] == pytest.approx(RHO * G * 5.0, rel=1e-6)
     assert static == (np.abs(leaning.velocity.values).max() < 1e-9)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_wave_enters_whole_through_a_base_whose_joints_the_weight_has_closed(engine):
+    """K d_m is a twentieth of the stress of the weight, at which joints are (1 + 20.8)^2 times as
+    stiff as at first. The wave comes from a base that is as stiff, not from one of open joints,
+    and reaches half a block above it before anything returns."""
+    height, heavy, amplitude = 40.0, 40.0, 1e-4
+    bed = SETS[0] | {"normal_stiffness": 1e9, "maximum_closure": RHO * heavy * height / 20.8e9}
+    scene = load(
+        mass(
+            *(1.0, height),
+            joint_sets=[bed],
+            boundaries={"left": "periodic", "right": "periodic", "bottom": "quiet"},
+            gravity={"acceleration": heavy},
+            loads=[
+                {"kind": "base", "side": "bottom", "direction": [0.0, 1.0], "quantity": "velocity"}
+                | {"shape": "half-sine", "amplitude": amplitude, "period": 0.004}
+            ],
+            time={"duration": 0.02},
+            record={"points": [[0.5, 0.5]], "interval": 1e-4},
+            numerics={"continuum": {"size": 1.0}},
+        )
+    )
+    moved = simulate(scene, engine).velocity.sel(axis="y").values[0]
+    assert moved.max() == pytest.approx(amplitude, rel=0.02)

@@ -129,7 +129,7 @@ def _quiet(scene: RockMass, blocks: Blocks) -> tuple[Contacts, np.ndarray]:
     own = np.array([held.get(name) == "quiet" for name in shape_of(scene.domain).sides])[outer.side]
     impedance = np.zeros((len(own), *2 * outer.normal.shape[1:]))
     regions = blocks.body.region[outer.blocks[own, 0]]
-    impedance[own] = impedances(scene, outer.normal[own], regions)
+    impedance[own] = impedances(scene, outer.normal[own], outer.centroid[own], regions)
     found = contacts_of(blocks, outer, np.zeros((len(own), 2)), impedance)
     corners, first, normal = *outer.outlines, outer.normal[own]
     edge = (corners[first[:-1] + 1] - corners[first[:-1]])[own]

@@ -14,6 +14,7 @@ import numpy as np
 
 from jointwave.cases.incident import PlaneWave, in_components, plane_wave
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock_mass import initial_stress
 from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.shape import Face, distance, shape_of
 from jointwave.cases.schema.joint import JointSet
@@ -26,7 +27,6 @@ from jointwave.compare.exact.rock_mass.conditions import (
     beyond_linear_law,
     free_face,
     normals_of,
-    prestress_of,
     reflecting_side,
 )
 from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
@@ -161,7 +161,8 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     times = np.linspace(0.0, scene.time.duration, int(count))
     waves = [plane_wave(scene, one) for one in scene.waves]
     peak = max(float(np.abs(one.pulse.value(times)).max()) for one in waves)
-    stress = _still(scene, places)[:, :, None] - field(places, times).stress
+    still = in_components(initial_stress(scene, places))
+    stress = still[:, :, None] - field(places, times).stress
     for one in sets:
         n = one.normal
         moves, traction = max(_moved(wave, n) for wave in waves), on_face(stress, n)
@@ -211,17 +212,3 @@ def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[floa
                 cohesion = one.residual_cohesion
             slides = float((shear - strength_of(angle, cohesion)).max())
     return opens, slides
-
-
-def _still(scene: RockMass, places: np.ndarray) -> np.ndarray:
-    """Return the components of the initial stress at places [m, d], Pa, compression positive: the
-    prestress and, at rest, the weight of the rock above, confined."""
-    found = np.tile(prestress_of(scene), (len(places), 1))
-    if scene.gravity is not None and scene.gravity.static:
-        g, rock = np.array(scene.gravity.direction), scene.rock
-        depth = places @ g - (np.array(scene.domain.corners) @ g).min()
-        weight = rock.density * scene.gravity.acceleration * depth
-        side = rock.intact_poisson / (1 - rock.intact_poisson)
-        share = side * np.eye(len(g)) + (1 - side) * np.outer(g, g)
-        found = found + weight[:, None] * in_components(share)
-    return found

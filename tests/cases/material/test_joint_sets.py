@@ -80,7 +80,8 @@ def test_joints_along_a_quiet_side_soften_the_rock_beyond_it(rock_with, size):
     1/mu = 1/20e9 + 1/(2 x 4e9), Z = sqrt(rho M) and sqrt(rho mu); in space for both S waves."""
     scene = rock_with({"dip": 0.0, "spacing": 2.0}, domain={"size": size})
     expected = np.sqrt([2600 / (1 / 60e9 + 1 / 20e9), 2600 / (1 / 20e9 + 1 / 8e9)])
-    found = impedances(scene, -np.eye(len(size))[-1:], np.array([-1]))
+    down = -np.eye(len(size))[-1:]
+    found = impedances(scene, down, np.zeros_like(down), np.array([-1]))
     tensor = np.diag(np.append(np.full(len(size) - 1, expected[1]), expected[0]))
     np.testing.assert_allclose(found, [tensor], rtol=1e-12, atol=1e-9 * expected[0])
 
