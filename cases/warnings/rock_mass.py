@@ -54,18 +54,17 @@ def _fastest(scene: RockMass) -> float:
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
     """Say where joints of two sets coincide: only the law of the first holds there."""
-    sets, corners = scene.joint_sets, np.array(scene.domain.corners)
     plain = [
         (i, one)
-        for i, one in enumerate(sets)
+        for i, one in enumerate(scene.joint_sets)
         if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
     ]
     for (i, one), (k, other) in combinations(plain, 2):
         normals = np.array([each.normal for each in (one, other)])
         if np.linalg.matrix_rank(normals, tol=PARALLEL) == 1:
-            places = _places(one, normals[1], corners), _places(other, normals[1], corners)
+            places = (_places(scene, each, normals[1]) for each in (one, other))
             apart = np.abs(np.subtract.outer(*places))
-            if count := int((apart < COINCIDENT * np.ptp(corners)).any(axis=0).sum()):
+            if count := int((apart < COINCIDENT * scene.reach).any(axis=0).sum()):
                 yield (
                     f"joint_sets[{k}] and joint_sets[{i}] have {count} joints in common: there "
                     f"only the law of joint_sets[{i}] holds"
@@ -76,19 +75,21 @@ def _at(place: Sequence[float]) -> str:
     return "[" + ", ".join(f"{x:g}" for x in place) + "]"
 
 
-def _away(one: JointSet, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def _away(scene: RockMass, one: JointSet, points: np.ndarray) -> np.ndarray:
     """Return the distances of points [n, d] from the nearest joint of a set without scatter, m."""
-    apart = np.subtract.outer(points @ one.normal, _places(one, one.normal, corners))
+    apart = np.subtract.outer(points @ one.normal, _places(scene, one, one.normal))
     return np.abs(apart).min(axis=1, initial=np.inf)
 
 
-def _places(one: JointSet, normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Return where the joints of a set without scatter lie along a normal of theirs, m."""
-    origin, across = normal @ one.origin, corners @ normal
+def _places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
+    """Return where the joints of a set without scatter lie along a normal of theirs, m; none does
+    along a side that is not periodic."""
+    origin, across = normal @ one.origin, np.array(scene.domain.corners) @ normal
     if one.spacing is None:
         return np.array([origin])
-    first = np.ceil((across.min() - origin) / one.spacing)
-    count = np.floor((across.max() - origin) / one.spacing) - first + 1
+    within = 0.0 if scene.boundaries.sides("periodic") else COINCIDENT * scene.reach
+    first = np.ceil((across.min() + within - origin) / one.spacing)
+    count = np.floor((across.max() - within - origin) / one.spacing) - first + 1
     return origin + one.spacing * (first + np.arange(max(int(count), 0)))
 
 
@@ -106,7 +107,7 @@ def _of_places(scene: RockMass) -> Iterator[str]:
     if not known or scene.domain.file_key:
         return  # where joints run, only the cuts know
     places = np.array(scene.record.joints).reshape(-1, dim)
-    away = np.min([_away(one, places, corners) for one in sets], axis=0, initial=np.inf)
+    away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (
             f"record.joints[{k}] = {_at(places[k])} is {away[k]:.3g} m from the nearest joint, "
@@ -118,8 +119,8 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
     for key, one in scene.entries("regions"):
         yield from of_dip(f"{key}.dip", one.dip)
     for key in ("size", "outline"):
-        for value in np.ravel(getattr(scene.domain, key) or []):
-            yield from of_value(f"domain.{key}", abs(float(value)), LENGTH)
+        for value in scene.domain.extent if getattr(scene.domain, key) else ():
+            yield from of_value(f"domain.{key}", float(value), LENGTH)
     if scene.gravity is not None and scene.gravity.direction[-1] >= 0:
         way = "upwards" if scene.gravity.direction[-1] else "sideways"
         up = "z" if scene.in_space else "y"
@@ -245,11 +246,11 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
     named = [(f"record.points[{i}]", x, read) for i, x in enumerate(scene.record.points)]
     forces = [(f"{key}.at", one.at) for key, one in scene.entries("loads") if one.at]
     named += [(*one, "whose sides bear equal parts of the force") for one in forces]
-    corners, points = np.array(scene.domain.corners), np.array([at for _, at, _ in named])
+    points = np.array([at for _, at, _ in named])
     for k, one in enumerate(scene.joint_sets):
         if one.scatter or scene.domain.file_key or not len(points):
             continue
-        near = _away(one, points, corners)
+        near = _away(scene, one, points)
         on = np.flatnonzero(near <= COINCIDENT * scene.reach)
         if len(on) and (one.ends_at or one.regions):
             sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))

@@ -198,6 +198,7 @@ OF_SIDES = {
     "free": ([{}], {"boundaries": dict.fromkeys(SIDES[1:], "quiet")}, "the left is free"),
     "damped": ([{}], {"damping": {"mass_proportional": 100.0}}, "damped"),
     "crossing": ([{"dip": 30.0}, {"name": "other", "dip": -40.0}], {}, "not parallel"),
+    "along": ([{"dip": 90.0}], {}, "lies along a wave"),
     "closing": ([{"dip": 30.0, "maximum_closure": 1e-4}], {}, "stiffens"),
     "hardly closing": ([{"dip": 30.0, "maximum_closure": 1.0}], {}, ""),
 }

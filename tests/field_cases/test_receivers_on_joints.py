@@ -90,6 +90,24 @@ def test_a_point_on_a_joint_is_warned_of(tilted):
     assert "joint_sets[0]" in said[0] and "mean of both sides" in said[0]
 
 
+def test_a_point_on_a_side_lies_on_no_joint_and_map_coordinates_are_no_lengths():
+    """Planes of a set fall on the sides of a slope in the coordinates of a map."""
+    x, y = 512345.0, 4512345.0
+    sets = [JOINT | {"name": f"{dip:g}", "dip": dip, "through": [x, y]} for dip in (0.0, 90.0)]
+    scene = load_tables(
+        mass(
+            *(12.0, 12.0),
+            domain={"outline": [[x, y], [x + 12, y], [x + 12, y + 12], [x, y + 12]]},
+            joint_sets=[one | {"spacing": 2.0} for one in sets],
+            loads=[wave("force", quantity="force") | {"at": [x + 5, y]}],
+            time={"duration": 0.02},
+            record={"points": [[x, y + 5], [x + 5, y + 12], [x + 5, y + 4]]},
+        )
+    )
+    (said,) = (line for line in warnings(scene) if "lies on a joint" in line or "domain" in line)
+    assert said.startswith("record.points[2]")
+
+
 def forced(at, direction, point, **tables):
     """Return rock under a force, with all that reflects waves, as far as tables leave it."""
     joints = [{"dip": 33.0, "spacing": 5.0, "through": [1.0, 1.0]}, {"name": "other", "dip": -57.0}]

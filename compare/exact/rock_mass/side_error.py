@@ -115,8 +115,10 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
             yield 1 - float(np.sqrt(1 - back**2)), f"joint set {one.name!r} is not smeared"
         else:
             count = shape_of(scene.domain).size / one.spacing if one.spacing else 1.0
-            crosses = f"joint set {one.name!r} is not parallel to layers, a free side or other sets"
-            yield 1 - (1 - back) ** count, crosses
+            why = "is not parallel to layers, a free side or other sets"
+            if any(abs(one.normal @ wave.direction) < ALONG for wave in scene.waves):
+                why = "lies along a wave"
+            yield 1 - (1 - back) ** count, f"joint set {one.name!r} {why}"
     yield from _beyond_strength(scene)
 
 
