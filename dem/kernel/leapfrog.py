@@ -1,19 +1,16 @@
-"""Leapfrog steps of rigid blocks: the order in which tiles take their steps.
+"""Leapfrog steps of rigid blocks: from a model to the arguments of the kernel.
 
-A tile needs the forces of the contacts of the tile before it at the same step, and the blocks of
-the next one at the step before. So the tiles t, t - 1, t - 2, ... take the steps n, n + 1, n + 2,
-... while they are in the cache. Threads have parts of the tiles, as `dem.kernel.parts` has them.
+Threads have parts of the tiles, as `dem.kernel.parts` has them.
 """
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.dem.contacts.chunks import LANES, marks
-from jointwave.dem.kernel.model import KernelFlags, Model, Samples, State
-from jointwave.dem.kernel.motion import AFTER, SUMMED
+from jointwave.dem.kernel.loop import loop_for
+from jointwave.dem.kernel.model import Model, Samples, State
 from jointwave.dem.kernel.parts import (
     Part,
     add_up,
@@ -24,11 +21,7 @@ from jointwave.dem.kernel.parts import (
     work_for,
 )
 from jointwave.dem.kernel.rotation import free_motion
-from jointwave.dem.kernel.step import step_for
 from jointwave.dem.sides.shaking import motion_of_walls
-from jointwave.numerics.borrowed import borrowed
-from jointwave.numerics.denormals import flush_denormals, restore_denormals
-from jointwave.numerics.jit import jitted
 
 
 class ChunkTable(NamedTuple):
@@ -159,69 +152,3 @@ def make_stepper(
             state.u[-model.walls :], state.v[-model.walls :] = u, v
 
     return take
-
-
-def widths_of(form: KernelFlags) -> tuple[int, ...]:
-    """Return how many lanes of each term of the ledger there are, 0 of terms that are absent."""
-    parts, held, lanes = form.parts, int(form.held), LANES
-    damped = form.mass_damping or form.local_damping
-    return (
-        lanes, lanes, lanes * (parts.dashpots or damped),
-        lanes * (form.points and form.dim > 1), lanes * parts.softening, held,
-        int(form.gravity), lanes if form.shaken else held,
-    )  # fmt: skip
-
-
-@cache
-def loop_for(form: KernelFlags) -> Callable:
-    """Return the time loop of blocks with these effects; absent ones are not compiled."""
-    step, has_ledger, widths = step_for(form), form.ledger, widths_of(form)
-
-    def loop(chunks, blocks, state, samples, drive, walls, work, span):
-        """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
-
-        Diagonal k of a band has tile k - j at its step j. Of tiles beyond the first and the last,
-        those take a step on which later ones of the band depend; the band leaves these and their
-        neighbours with motion that is not theirs.
-
-        work : `parts.Work`. span : first, last, the first step in `drive` and `walls`, begin, end,
-        stride, depth.
-        """
-        setting = flush_denormals()
-        chunks, blocks, state = borrowed(chunks), borrowed(blocks), borrowed(state)
-        samples, drive, walls = borrowed(samples), borrowed(drive), borrowed(walls)
-        work = borrowed(work)
-        first, last, origin, begin, end, stride, depth = span
-        tiles, ledgers, ledger = chunks.tiles.shape[1] - 1, work.ledgers, None
-        for n in range(begin, end, depth):
-            steps = depth if depth < end - n else end - n
-            from_tile = first - steps if first > steps else 0
-            to_tile = last + steps if last + steps < tiles else tiles
-            for k in range(from_tile, to_tile + steps - 1):
-                for j in range(steps):
-                    t, later = k - j, steps - 1 - j
-                    if t < 0 or t < first - 1 - later or t >= tiles or t >= last + later:
-                        continue
-                    if has_ledger:
-                        ledger = ledgers[j if t >= first and t < last else depth]
-                    s = (n + j) // stride if (n + j) % stride == 0 else -1
-                    step(
-                        chunks, blocks, state, work.force, drive, walls, samples, work.buffer,
-                        ledger, t, n + j - origin, s,
-                    )  # fmt: skip
-            if has_ledger:
-                for j in range(n, n + steps):
-                    one = ledgers[j - n]
-                    for term in range(state.sums.size):
-                        row, before, after = term * LANES, 0.0, 0.0
-                        sampled, summed = j % stride == 0, row in SUMMED
-                        for i in range(row, row + (widths[term] if sampled or summed else 0)):
-                            before, after = before + one[i], after + one[AFTER + i]  # in order
-                            one[i], one[AFTER + i] = 0.0, 0.0
-                        if sampled:
-                            samples.energy[term, j // stride] = state.sums[term] + before
-                        if summed:
-                            state.sums[term] += before + after
-        restore_denormals(setting)
-
-    return jitted(loop, form)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jointwave.dem.contacts import chunks
-from jointwave.dem.kernel import leapfrog, parts
+from jointwave.dem.kernel import leapfrog, loop, parts
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
@@ -44,7 +44,7 @@ def plain(monkeypatch):
     }
     monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
     for key, stand_in in stand_ins.items():
-        monkeypatch.setattr(leapfrog, key, stand_in)
+        monkeypatch.setattr(loop, key, stand_in)
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ def test_cache_follows_every_source(tmp_path):
         shutil.copytree(ROOT / package, tmp_path / package)
     states = {cache_directory(tmp_path)}
     assert states == {cache_directory(ROOT)} == {jit.DIRECTORY}
-    for edited in ("joints/law.py", "dem/kernel/step.py", "continuum/stepping/explicit.py"):
+    for edited in ("joints/law.py", "dem/kernel/loop.py", "continuum/stepping/explicit.py"):
         with (tmp_path / edited).open("a") as file:
             file.write("#")
         states.add(cache_directory(tmp_path))

@@ -1,0 +1,273 @@
+"""The kernel of rigid blocks in one, two or three dimensions: steps of leapfrog, or stages of a
+composition, tile by tile.
+
+A contact joins block i to block j across a plane face. In its frame, n from i to j and then the
+tangents, the jump at a point of the face, e from its centre, is that of both blocks' motion there:
+
+    jump = E (u_j + theta_j x r_j - u_i - theta_i x r_i) + (E (theta_j - theta_i)) x e,
+
+gap first, then slip. At each point the law gives a traction; with the area w that a point stands
+for, the force on block j and its moment about the centre of the face are the sums of w t and of
+e x w t. Joints that always hold need no points: area and second moments of the face do.
+
+Displacements live at whole steps, velocities half a step before; dashpots of joints see rates that
+are extrapolated to the whole step, those beyond the domain the mean of both half steps. The ledger
+is exact at a step of any length: the work of a force from one whole step to the next is the mean of
+its two values times the displacement increment, the kinetic energy v[n-1/2] M v[n+1/2] / 2. So a
+force works over the half step before it and over the one after it, which are accounted for apart.
+A step that is composed of stages (`composition`) takes each as a leapfrog step with a length of
+its own for velocities, zero in the first, and for displacements.
+
+With rotations of any size (`finite`, in space) R_i and R_j turn the blocks from where they were at
+the start. The points belong to block i. The jump at one is how far the point of block j that was
+there at the start is from it, in axes that turn with j; x the centroids,
+
+    jump = E (R_j^T (x_j - x_i) + r_j - A r_i) + E (1 - A) E^T e,   A = R_j^T R_i,
+
+all by differences from no rotation, which keep the digits of small ones. The force R_j E^T w t acts
+on both blocks at the point itself: it is the gradient of the joint's energy, and conserves momentum
+and angular momentum. About the centre of the face on j it has, in the frame, the moment
+
+    sum over tangents k of (E A k) x (sum of e_k w t), less jump x force, both of the centre.
+
+A point that is off the other face, or behind that block, carries nothing. Rates are differences of
+the jump over the step. Blocks have angular momenta at half steps, in the axes of space, and unit
+quaternions at whole steps (`rotation`); the ledger takes the angular velocities that momenta
+give in the orientation of the step, and closes to second order.
+
+Contacts are worked on side by side, in lanes; their forces are added to the blocks one after the
+other, always in the same order.
+
+A tile needs the forces of the contacts of the tile before it at the same step, and the blocks of
+the next one at the step before. So the tiles t, t - 1, t - 2, ... take the steps n, n + 1, n + 2,
+... while they are in the cache.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from jointwave.dem.contacts.chunks import LANES as L
+from jointwave.dem.kernel.model import KernelFlags
+from jointwave.dem.kernel.motion import (
+    AFTER,
+    CHUNK,
+    HELD,
+    PLACE,
+    SEEN,
+    SUMMED,
+    VISCOUS,
+    WORK,
+    motion_for,
+)
+from jointwave.dem.kernel.relative import onto_blocks_for, relative_for
+from jointwave.dem.kernel.rotation import dot, three
+from jointwave.dem.kernel.row import row_forces_for
+from jointwave.dem.kernel.tractions import face_forces_for, point_forces_for
+from jointwave.joints.formula import formula
+from jointwave.joints.law import rows_of
+from jointwave.numerics.borrowed import borrowed
+from jointwave.numerics.denormals import flush_denormals, restore_denormals
+from jointwave.numerics.jit import jitted
+
+
+def widths_of(form: KernelFlags) -> tuple[int, ...]:
+    """Return how many lanes of each term of the ledger there are, 0 of terms that are absent."""
+    parts, held, lanes = form.parts, int(form.held), L
+    damped = form.mass_damping or form.local_damping
+    return (
+        lanes, lanes, lanes * (parts.dashpots or damped),
+        lanes * (form.points and form.dim > 1), lanes * parts.softening, held,
+        int(form.gravity), lanes if form.shaken else held,
+    )  # fmt: skip
+
+
+def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
+    """Return the formulas of rates with finite rotations, of the rates that dashpots see, and of
+    what these took."""
+    motions, drags, past, rows = form.motions, form.drags, form.history, form.buffer
+    LAST_RATE, LAST_DRAG, LAST_JUMP = past.rate, past.drag, past.jump
+    JUMP, RATE, NOW, DRAG = rows.jump, rows.rate, rows.now, rows.drag
+
+    @formula
+    def differ(h, q, dt):
+        """Put the rates half a step before of motion that is no linear function of the blocks'."""
+        for c in range(motions * L):
+            jump = q[JUMP + c]
+            q[RATE + c], h[LAST_JUMP + c] = (jump - h[LAST_JUMP + c]) / dt, jump
+
+    @formula
+    def extrapolate(h, q, ledger, dt):
+        """Put the rates that dashpots see; enter what theirs of the last step took since."""
+        for a in range(motions):
+            for c in range(a * L, a * L + L):
+                rate, before = q[RATE + c], h[LAST_RATE + c]
+                if drags:
+                    ledger[VISCOUS + c - a * L] -= 0.5 * dt * (h[LAST_DRAG + c] * rate)
+                q[NOW + c], h[LAST_RATE + c] = 1.5 * rate - 0.5 * before, rate
+
+    @formula
+    def account_drags(h, q, ledger, dt):
+        """Enter what dashpots took in the half step before."""
+        for a in range(motions):
+            for c in range(a * L, a * L + L):
+                ledger[VISCOUS + c - a * L] -= 0.5 * dt * (q[DRAG + c] * q[RATE + c])
+                h[LAST_DRAG + c] = q[DRAG + c]
+
+    return differ, extrapolate, account_drags
+
+
+def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
+    """Return the formulas that sample watched contacts, and recorded blocks."""
+    dim, freedoms, recorded, finite = form.dim, form.freedoms, form.recorded, form.finite
+    FORCE, JUMP, ON_J = form.buffer.force, form.buffer.jump, form.buffer.on_j
+    FRAME = form.table.frame
+
+    @formula
+    def record_contacts(chunks, samples, q, g, t, s):
+        """Sample the watched contacts of chunk g."""
+        for r in range(chunks.tiles[SEEN, t], chunks.tiles[SEEN, t + 1]):
+            c, row = chunks.seen[0, r] - g * L, chunks.seen[1, r]
+            if c >= 0 and c < L:
+                for a in range(recorded - dim):
+                    samples.contact[row, a, s] = q[FORCE + a * L + c]
+                for a in range(dim):
+                    samples.contact[row, recorded - dim + a, s] = q[JUMP + a * L + c]
+                    if finite:
+                        e = three(chunks.table[g], FRAME + 3 * a * L + c, L)
+                        samples.contact[row, a, s] = dot(e, three(q, ON_J + c, L))
+
+    @formula
+    def record_blocks(chunks, blocks, state, samples, t, s, share):
+        """Add a share of the velocities of recorded blocks to their samples, and displacements at
+        the first."""
+        for r in range(chunks.tiles[PLACE, t], chunks.tiles[PLACE, t + 1]):
+            i, row = freedoms * blocks.places[0, r], blocks.places[1, r]
+            for a in range(freedoms):
+                if share == 0:
+                    samples.displacement[row, a, s] = state.u[i + a]
+                    samples.velocity[row, a, s] = 0.0
+                samples.velocity[row, a, s] += 0.5 * state.v[i + a]
+            if finite and share == 0:
+                samples.displacement[row, freedoms, s] = state.turn[blocks.places[0, r]]
+
+    return record_contacts, record_blocks
+
+
+@cache
+def loop_for(form: KernelFlags) -> Callable:
+    """Return the time loop of blocks with these effects; absent ones are not compiled.
+
+    It is one function: numba optimises a formula alone, and again in each that calls it.
+    """
+    dim, freedoms, finite, has_ledger = form.dim, form.freedoms, form.finite, form.ledger
+    dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
+    stages, composed, matched, shaken = form.stages, form.stages > 1, form.matched, form.shaken
+    in_line, used, widths = dim == 1, rows_of(form.parts), widths_of(form)
+    remembers = form.history.size > 0 or (form.points and form.point.size > 0)
+    LAW, JUMP, RATE, ON_J = form.buffer.law, form.buffer.jump, form.buffer.rate, form.buffer.on_j
+    relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
+    forces = point_forces_for(form) if form.points else face_forces_for(form)
+    differ, extrapolate, account_drags = rates_for(form)
+    record_contacts, record_blocks = records_for(form)
+    row_forces = row_forces_for(form, record_contacts)
+
+    def loop(chunks, blocks, state, samples, drive, walls, work, span):
+        """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
+
+        Diagonal k of a band has tile k - j at its step j. Of tiles beyond the first and the last,
+        those take a step on which later ones of the band depend; the band leaves these and their
+        neighbours with motion that is not theirs.
+
+        chunks, blocks, state, samples : `leapfrog.ChunkTable`, `leapfrog.BlockTable`, `State`,
+        `Samples`. drive, walls : forces on held blocks in each step or stage, and motion of walls,
+        from `origin` on. work : `parts.Work`. span : first, last, origin, begin, end, stride,
+        depth.
+        """
+        setting = flush_denormals()
+        chunks, blocks, state = borrowed(chunks), borrowed(blocks), borrowed(state)
+        samples, drive, walls = borrowed(samples), borrowed(drive), borrowed(walls)
+        work = borrowed(work)
+        first, last, origin, begin, end, stride, depth = span
+        tiles, force, q, dt = chunks.tiles, work.force, work.buffer, blocks.dt
+        ledger: Any = None
+        u, v, turn, still = state.u, state.v, state.turn, force.size - freedoms
+        count = tiles.shape[1] - 1
+        for band in range(begin, end, depth):
+            steps = depth if depth < end - band else end - band
+            from_tile = first - steps if first > steps else 0
+            to_tile = last + steps if last + steps < count else count
+            for k in range(from_tile, to_tile + steps - 1):
+                for j in range(steps):
+                    t, later = k - j, steps - 1 - j
+                    if t < 0 or t < first - 1 - later or t >= count or t >= last + later:
+                        continue
+                    if has_ledger:
+                        ledger = work.ledgers[j if t >= first and t < last else depth]
+                    n, sampled = band + j - origin, (band + j) % stride == 0
+                    s, stop = (band + j) // stride if sampled else -1, tiles[CHUNK, t + 1]
+                    if composed and n % stages == 0 and not sampled:
+                        stop = tiles[CHUNK, t]  # the kick is zero
+                    if in_line:
+                        row_forces(
+                            chunks, state, force, walls, samples, q, ledger, t, stop, dt, n, s
+                        )
+                    else:
+                        for g in range(tiles[CHUNK, t], stop):
+                            contacts, at = chunks.table[g], chunks.pair[g]
+                            row_from, lanes = chunks.row_from[g], min(L, chunks.contacts - g * L)
+                            h: Any = None
+                            if remembers:
+                                h = state.history[g]
+                            relative(u, turn, walls, n, 0, still, at, row_from, contacts, q, JUMP)
+                            if rated and finite:
+                                differ(h, q, dt)
+                            elif rated:
+                                relative(
+                                    v, turn, walls, n, 1, still, at, row_from, contacts, q, RATE
+                                )
+                            if dashpots:
+                                extrapolate(h, q, ledger, dt)
+                            if varied:
+                                for f in used:
+                                    for c in range(L):
+                                        q[LAW + f * L + c] = chunks.laws[f, at[2 * L + c]]
+                            forces(chunks.laws, contacts, h, q, ledger, dt, 1.0 if sampled else 0.0)
+                            onto_blocks(contacts, q, at, row_from, lanes, force.size, force)
+                            if drags:
+                                account_drags(h, q, ledger, dt)
+                            if shaken and has_ledger:  # what moves walls works against joints
+                                for c in range(lanes):
+                                    w = at[L + c] - still
+                                    if w > 0:
+                                        for a in range(dim):
+                                            f = 0.5 * dt * q[ON_J + a * L + c]
+                                            ledger[WORK + c] -= f * walls[n, 1, w + a]
+                                            ledger[WORK + AFTER + c] -= f * walls[n + 1, 1, w + a]
+                            if sampled:
+                                record_contacts(chunks, samples, q, g, t, s)
+                    if sampled:
+                        record_blocks(chunks, blocks, state, samples, t, s, 0)
+                        if matched:
+                            for r in range(tiles[HELD, t], tiles[HELD, t + 1]):
+                                for a in range(freedoms):
+                                    samples.closure[r, a, s] = state.closure[r, a]
+                    move(blocks, tiles, state, force, drive, q, ledger, t, n, sampled)
+                    if sampled:
+                        record_blocks(chunks, blocks, state, samples, t, s, 1)
+            if has_ledger:
+                for j in range(band, band + steps):
+                    one = work.ledgers[j - band]
+                    for term in range(state.sums.size):
+                        row, before, after = term * L, 0.0, 0.0
+                        sampled, summed = j % stride == 0, row in SUMMED
+                        for i in range(row, row + (widths[term] if sampled or summed else 0)):
+                            before, after = before + one[i], after + one[AFTER + i]  # in order
+                            one[i], one[AFTER + i] = 0.0, 0.0
+                        if sampled:
+                            samples.energy[term, j // stride] = state.sums[term] + before
+                        if summed:
+                            state.sums[term] += before + after
+        restore_denormals(setting)
+
+    return jitted(loop, form)
