@@ -97,11 +97,8 @@ def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool
                 raise ValueError(f"is neither text (line {line} holds a NUL byte) {allowed}")
             seconds, traces = read_traces(content, form)
             rest = [Column(printable(name), "", values) for name, values in traces.items()]
-            found, where, gaps = (
-                Columns(Column("time", "s", seconds), rest),
-                "sample {}".format,
-                False,
-            )
+            found, where = Columns(Column("time", "s", seconds), rest), "sample {}".format
+            gaps = False
         else:
             text = content.removeprefix(b"\xef\xbb\xbf")
             text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")

@@ -88,9 +88,9 @@ def _places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
     if one.spacing is None:
         return np.array([origin])
     within = 0.0 if scene.boundaries.sides("periodic") else COINCIDENT * scene.reach
-    first = np.ceil((across.min() + within - origin) / one.spacing)
-    count = np.floor((across.max() - within - origin) / one.spacing) - first + 1
-    return origin + one.spacing * (first + np.arange(max(int(count), 0)))
+    ends = np.array([across.min() + within, across.max() - within])
+    first, last = (ends - origin) / one.spacing
+    return origin + one.spacing * np.arange(np.ceil(first), np.floor(last) + 1)
 
 
 def _of_places(scene: RockMass) -> Iterator[str]:
