@@ -28,10 +28,6 @@ class SceneFile(pytest.File):
     results : by scene hash and name, while the tests of this file run.
     """
 
-    def setup(self) -> None:
-        """Begin without results."""
-        self.results: dict[tuple[str, str], Any] = {}
-
     def teardown(self) -> None:
         """Release the results: those of all scenes together take gigabytes."""
         self.results.clear()
@@ -39,6 +35,7 @@ class SceneFile(pytest.File):
     def collect(self) -> Iterator["PairItem"]:
         """Yield the tests; one that fails for a file that is no scene, and for each key that
         applies to no variant."""
+        self.results: dict[tuple[str, str], Any] = {}
         try:
             scenes = load_variants(self.path)
         except SceneError as error:

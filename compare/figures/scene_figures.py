@@ -14,8 +14,7 @@ from jointwave.compare.figures.charts.spacetime import space_time
 from jointwave.compare.figures.charts.spectra import spectra
 from jointwave.compare.figures.drawing.scene import scene_figure, sketch_of
 from jointwave.compare.figures.export import SceneFigure, blank
-from jointwave.compare.figures.receivers import Panel, table_of
-from jointwave.compare.figures.variants import named
+from jointwave.compare.figures.receivers import Panel, named, table_of
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder

@@ -15,8 +15,7 @@ import xarray as xr
 
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.export import save
-from jointwave.compare.figures.receivers import curve_table
-from jointwave.compare.figures.variants import named
+from jointwave.compare.figures.receivers import curve_table, named
 from jointwave.compare.misfit.pairs import Comparison, Row, meaning
 from jointwave.compare.misfit.places import Place, places_of
 from jointwave.compare.readings.attenuation import quality_factor, wave_speed, waveforms

@@ -8,7 +8,7 @@ import pandas as pd
 
 from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES
-from jointwave.compare.figures.variants import named
+from jointwave.compare.figures.receivers import named
 from jointwave.compare.misfit import differences
 from jointwave.compare.misfit.differences import PeakDifference
 from jointwave.compare.misfit.metrics import Worst, worst

@@ -22,8 +22,8 @@ from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_
 from jointwave.compare.figures.charts.axes import LETTER
 from jointwave.compare.figures.drawing.sketch import MANY, ROCKS
 from jointwave.compare.figures.export import SceneFigure, blank
+from jointwave.compare.figures.receivers import named
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
-from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.dataset import A_RESULT
 

@@ -15,9 +15,8 @@ from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import in_order, label_of
 from jointwave.compare.figures.charts.axes import chart, set_heading
 from jointwave.compare.figures.export import SceneFigure
-from jointwave.compare.figures.receivers import table_of
+from jointwave.compare.figures.receivers import named, table_of
 from jointwave.compare.figures.style import style
-from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.readings.attenuation import (
     quality_factor,

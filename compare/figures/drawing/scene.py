@@ -15,8 +15,8 @@ from jointwave.cases.units import units_of
 from jointwave.compare.figures.drawing import plane, space
 from jointwave.compare.figures.drawing.sketch import LOAD, Sketch
 from jointwave.compare.figures.export import SceneFigure, blank
+from jointwave.compare.figures.receivers import named
 from jointwave.compare.figures.style import WIDTH, unit_for
-from jointwave.compare.figures.variants import named
 from jointwave.compare.misfit.pairs import Comparison
 
 MOST = 4  # drawings per scene

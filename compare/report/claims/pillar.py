@@ -8,7 +8,7 @@ import pandas as pd
 from jointwave.cases.loads import load_history
 from jointwave.compare.exact.bar.bars import EQUIVALENT, JOINTED
 from jointwave.compare.exact.blocks import row_of_blocks
-from jointwave.compare.figures.variants import named, variant_names
+from jointwave.compare.figures.receivers import named, variant_names
 from jointwave.compare.misfit.metrics import mean_period, misfit, relative_l2
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.report.claims import claim, falls, listed, waves

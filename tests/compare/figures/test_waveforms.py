@@ -18,9 +18,8 @@ from jointwave.compare.figures.charts.waveforms import (
     variant_styles,
     waveforms,
 )
-from jointwave.compare.figures.receivers import panels
+from jointwave.compare.figures.receivers import panels, variant_names
 from jointwave.compare.figures.style import GIVEN
-from jointwave.compare.figures.variants import variant_names
 from jointwave.compare.misfit.alignment import align_curve
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.pairs import Comparison
