@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import SoftLayer
+from jointwave.cases.schema.law_parts import under
 
 #: Other units in which values are often given, and their factors to SI.
 Units = tuple[tuple[str, float], ...]
@@ -78,7 +79,7 @@ def implausible(scene: AnyScene) -> Iterator[str]:
                 yield f"{table}.{key} = {value:g} is negative, which no known rock is"
     for table, law in scene.laws.items():
         yield from _of_law(table, law)
-        rest = law.under(scene.joints) if isinstance(law, SoftLayer) else law  # type: ignore[union-attr]
+        rest = under(law, scene.joints) if isinstance(law, SoftLayer) else law  # type: ignore[union-attr]
         if law.friction_angle is not None and rest.tension is rest.tensile_strength is None:
             yield (
                 f"{table}.friction_angle without {table}.tension: the joint carries any tension; "

@@ -158,6 +158,9 @@ MISTAKES = {
     STRONG: {
         "joints.cohesion = 1e4 -> joints.fracture_energy": "is required with joints.tensile",
         "joints.fracture_energy = 1.0; joints.tension = false": "contradicts tensile_strength",
+        "joints.fracture_energy = 1.0; prestress.normal = -200000.0": (
+            "is a tension of which joints as in joints carry at most 100000 Pa"
+        ),
         "joints.fracture_energy = 0.5": "snaps back ... at least 0.5716 J/m2",
         "joints.fracture_energy = 1.0 -> soft_layers[0].fracture_energy = 1.0": (
             "snaps back ... at least 5.744 J/m2"

@@ -148,9 +148,16 @@ def _of_damping(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_strength(scene: Scene) -> Iterator[Wrong]:
-    """Layers take what they do not give from the joints, so that these come first."""
+    """Yield contradictions of laws, and a tension that one does not bear; a weight may press it.
+    Layers take what they do not give from the joints, so that these come first."""
+    presses = scene.gravity is not None and scene.gravity.static
+    pull = 0.0 if scene.prestress is None or presses else -scene.prestress.normal
     for table, law in zip(scene.laws, (scene.joints, *scene.layers), strict=True):
         yield from within(table, of_strength(law))
+        most = 0.0 if law.tension is False else law.tensile_strength
+        if most is not None and pull > most:
+            allowed = f"is a tension of which joints as in {table} carry at most {most:g} Pa"
+            yield "prestress.normal", -pull, allowed
 
 
 def _of_fracture(scene: Scene) -> Iterator[Wrong]:

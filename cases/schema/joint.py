@@ -70,7 +70,8 @@ class Joints(JointLaw):
 
 
 class SoftLayer(JointLaw):
-    """One joint with a law of its own; absent keys are taken from [joints]."""
+    """One joint with a law of its own; absent keys are taken from [joints], but not those that
+    contradict its own."""
 
     y: Positive  #: m, on a joint
     spacing_stiffness: Positive | None = None  #: Pa, S K_n; absent: as stiff as the other joints
@@ -97,12 +98,6 @@ class SoftLayer(JointLaw):
         if self.spacing_stiffness is not None:
             return self.spacing_stiffness / spacing
         return self.normal_stiffness
-
-    def under(self, joints: JointLaw) -> "SoftLayer":
-        """Return the layer with missing keys taken from [joints], except its K_n."""
-        keys = JointLaw.model_fields.keys() - {"normal_stiffness"}
-        absent = [key for key in keys if getattr(self, key) is None]
-        return self.model_copy(update={key: getattr(joints, key) for key in absent})
 
 
 #: Cosine and sine of dips, degrees, that are exact.

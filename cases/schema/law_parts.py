@@ -5,7 +5,7 @@ from math import atan, degrees
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from jointwave.cases.schema.joint import JointLaw
+from jointwave.cases.schema.joint import JointLaw, SoftLayer
 
 #: Strength (Pa) and opening (m) of a joint that never fails beside joints that do, and closure (m)
 #: of one that does not stiffen; its square is still a number.
@@ -148,3 +148,17 @@ PARTS = (
         instead_of=("tension",),
     ),
 )
+
+
+def under(layer: SoftLayer, joints: JointLaw) -> SoftLayer:
+    """Return a layer with missing keys taken from [joints], except its K_n and what contradicts its
+    own keys."""
+    own = {key for key in JointLaw.model_fields if getattr(layer, key) is not None}
+    left = own | {"normal_stiffness"}
+    for part in PARTS:
+        against = set(part.instead_of)
+        against.update(*(one.all_keys for one in PARTS if against & {*one.keys}))
+        left |= against if own & {*part.all_keys} else set()
+        left |= {*part.all_keys} if own & against else set()
+    taken = [key for key in JointLaw.model_fields if key not in left]
+    return layer.model_copy(update={key: getattr(joints, key) for key in taken})

@@ -12,6 +12,7 @@ from pydantic import PrivateAttr
 
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.joint import JointLaw, Joints, SoftLayer
+from jointwave.cases.schema.law_parts import under
 from jointwave.cases.schema.pulse import NO_LOAD, Load, shortest_period
 from jointwave.cases.schema.segment import Part, Segment, parts_of
 from jointwave.cases.schema.tables import (
@@ -213,5 +214,5 @@ class Scene(SceneBase):
 
     @property
     def layers(self) -> list[SoftLayer]:
-        """The soft layers, each with missing keys taken from [joints], except its K_n."""
-        return [layer.under(self.joints) for layer in self.soft_layers]
+        """The soft layers, each with what it takes from [joints]."""
+        return [under(layer, self.joints) for layer in self.soft_layers]

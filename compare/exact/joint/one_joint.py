@@ -52,6 +52,7 @@ def applies(scene: Scene) -> Answer:
         HELD,
         (np.count_nonzero(compliance) != 1, "not exactly one joint differs in stiffness"),
         (bool((compliance < 0).any()), "the layer is stiffer than the other joints"),
+        (bool(p.damps_alone.any()), "another joint has a dashpot"),
         (scene.ends.end not in ("quiet", "matched"), "the far end reflects"),
     )
     return answer if not answer else back_in_time(scene, the_joint(p).y, p.bar_speed)

@@ -136,6 +136,8 @@ NO = {
         (DAMPED, "the rock is damped"),
         (QUIET, ONE_DIFFERS),
         (QUIET | {"soft_layers": STIFF} | RIGID, "the layer is stiffer than the other joints"),
+        (QUIET | {"soft_layers": [*LAYER, {"y": 30.0, "damping_ratio": 1.0}]},
+         "another joint has a dashpot"),
         (LAYERED[0], "the far end reflects"),
         (LAYERED[0] | SHAKEN | {"ends": {"start": "fixed", "end": "quiet"}}, SHAKES[1]),
         (LAYERED[0] | {"ends": {"end": "quiet"}},

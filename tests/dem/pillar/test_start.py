@@ -65,11 +65,6 @@ LEANING = np.arctan(1.01 * np.tan(np.radians(30.0)))
             r"gravity: no static .* static = false",
         ),
         (
-            {"tension": False},
-            {"prestress": {"normal": -1e6}},
-            r"prestress: no static state: the block .* the joints cannot",
-        ),
-        (
             {"friction_angle": 30.0, "damping_ratio": 1.0},
             {
                 "gravity": {"direction": [np.sin(LEANING), np.cos(LEANING), 0.0]},
@@ -82,7 +77,7 @@ LEANING = np.arctan(1.01 * np.tan(np.radians(30.0)))
             r"gravity: no static state: the block at .* slides",
         ),
     ],
-    ids=["hanging", "pulled", "leaning above the friction angle"],
+    ids=["hanging", "leaning above the friction angle"],
 )
 def test_without_a_static_state_the_scene_is_refused(pillar, joints, changes, message):
     """One line names what acts, and the block that gives way."""
