@@ -104,7 +104,7 @@ class Place(NamedTuple):
         return next((wave for place, wave in found if self.is_at(place)), None)
 
 
-def labelled(text: str) -> Place | None:
+def spelled(text: str) -> Place | None:
     """Return the quantity, component and receiver of a label as it spells them; None if it is none,
     or of no known quantity."""
     match = LABEL.fullmatch(text.strip())
@@ -119,7 +119,7 @@ def labelled(text: str) -> Place | None:
 
 def parsed(text: str) -> Place | None:
     """Return the place given by a label; None if it gives none of a scene."""
-    place = labelled(text)
+    place = spelled(text)
     if place is None:
         return None
     if len(place.at) == 1 and place.quantity in ("velocity", "displacement"):

@@ -55,10 +55,8 @@ def spectra(result: Recording, quantity: str = "velocity", axis: str | None = No
     x[:, [0, -1]] /= 2
     turned = np.exp(-2j * np.pi * frequency.values * float(row["time"][0]))
     found = xr.Variable(("receiver", "frequency"), sampling(row) * np.fft.rfft(x) * turned)
-    attrs = {
-        "long_name": f"spectrum of the {quantity}",
-        "units": f"{next(iter(UNITS[quantity]))}/Hz",
-    }
+    unit = next(iter(UNITS[quantity]))
+    attrs = {"long_name": f"spectrum of the {quantity}", "units": f"{unit}/Hz"}
     coords = {"frequency": frequency, "distance": row["distance"]}
     return xr.DataArray(found, coords, name="spectrum", attrs=attrs)
 

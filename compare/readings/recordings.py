@@ -12,7 +12,7 @@ from jointwave.cases.records import Column
 from jointwave.cases.units import TIME, UNITS
 from jointwave.compare.misfit.alignment import UNEVEN
 from jointwave.compare.misfit.columns import Selection, read_table, selected, selection
-from jointwave.compare.misfit.places import labelled
+from jointwave.compare.misfit.places import spelled
 from jointwave.results.labels import RECEIVERS
 from jointwave.results.netcdf import is_netcdf, load_netcdf
 
@@ -73,7 +73,7 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         if is_netcdf(choice.path) and not (choice.column or choice.label):
             return load_netcdf(choice.path)
         time, columns = read_table(choice, 2, gaps=False)
-        found = selected(columns, every if choice.is_time else choice, labelled)
+        found = selected(columns, every if choice.is_time else choice, spelled)
         if not found:
             raise ValueError(f"has no column {choice.column or choice.label!r}")
         waves: dict[Where, np.ndarray] = {}

@@ -194,7 +194,6 @@ class Solver:
         """Return how many of them a run has."""
         if not self.per_block:
             return freedoms
-
         if scene.is_column:
             return scene.block_count
         return freedoms // (OF_BLOCK_IN_SPACE if scene.in_space else OF_BLOCK_IN_PLANE)

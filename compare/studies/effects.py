@@ -37,7 +37,7 @@ from jointwave.compare.studies.effects_summary import summarise
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.step_cost import cost_of_every_effect, shortened, step_costs
-from jointwave.compare.studies.store import FAILURES, Pool, Row, Store, alone, reason_of
+from jointwave.compare.studies.store import FAILURES, Pool, Row, alone, reason_of
 from jointwave.results.dataset import scene_hash
 
 BLOCKS, ROCK = DEM.name, JOINTED_ROCK.name
@@ -116,19 +116,15 @@ class Effects(Experiment):
     def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
         """Return the rows of all effects of each point."""
         with alone():
-            left = self.store.missing(self.points)
-            runs = replace(self.store, folder=None).compute(left, measure, pool)
+            left = self.missing()
+            runs = replace(self, points=left, folder=None).measured(pool)
             rows = dict(zip(map(key, left), runs, strict=True))
-
-            def work(point: Point) -> list[Row]:
-                return timed(point, rows[key(point)])
-
-            return self.store.compute(self.points, work, progress=progress)
+            costs = replace(self, measure=lambda point: timed(point, rows[key(point)]))
+            return costs.measured(progress=progress)
 
 
 def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
     """Return the study of all effects of some variants; results and files are in `folder`."""
-    saved = Store(folder, key)
     points = [
         (one, engine)
         for one in wanted
@@ -139,7 +135,7 @@ def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
     def told(rows: list[list[Row]]) -> Summary:
         return summarise(folder, pd.DataFrame(chain(*rows), columns=COLUMNS))
 
-    return Effects(title, points, saved, measure, told, runs)
+    return Effects(title, points, folder, key, measure, told, runs)
 
 
 def runs(points: Sequence[Point]) -> list[Run]:

@@ -1,8 +1,14 @@
-"""A study: a grid of points, the row of readings of each, and their summary."""
+"""A study: a grid of points, the row of readings of each, and their summary.
 
+A point is saved as a JSON file whose name is a hash of everything that determines its rows,
+including the program. An interrupted study thus resumes, and a changed one starts afresh.
+"""
+
+import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,8 +16,9 @@ import pandas as pd
 
 from jointwave.compare.engines import Progress
 from jointwave.compare.figures.export import Drawn
+from jointwave.compare.runs.output import read_rows, write_text
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.store import Pool, Store, alone
+from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
 
 
 class Summary(NamedTuple):
@@ -48,30 +55,69 @@ class Summary(NamedTuple):
 class Experiment:
     """A study: each of its points is measured once and saved, and the rows of all summarised.
 
-    store : of the rows. measure : returns the row of a point, or several. summarise : writes the
-    files of all rows. runs : returns the solutions that some points need. timed : only one such
-    study runs on a machine at a time. shares : whether several processes may share the points.
+    folder : of the saved rows; None: nothing is saved. key : returns the name of a point. measure :
+    returns the row of a point, or several. summarise : writes the files of all rows. runs : returns
+    the solutions that some points need. timed : only one such study runs on a machine at a time.
+    shares : whether several processes may share the points. is_valid : whether saved rows are still
+    valid. fresh : take none. lost : returns the rows, not saved, of a point whose process has died;
+    None: MemoryError is raised.
     """
 
     title: str
     points: Sequence[Any]
-    store: Store
+    folder: Path | None
+    key: Callable[[Any], str]
     measure: Callable[[Any], Any]
     summarise: Callable[[list[Any]], Summary]
     runs: Callable[[Sequence[Any]], list[Run]] = lambda points: []
     timed: bool = False
     shares: bool = True
+    is_valid: Callable[[Any], bool] = lambda rows: True
+    fresh: bool = False
+    lost: Callable[[Any], Any] | None = None
 
     def planned(self) -> list[Run]:
         """Return the runs of the points that are not saved yet."""
-        return self.runs(self.store.missing(self.points))
-
-    def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
-        """Return the rows of all points, in their order."""
-        with alone() if self.timed else nullcontext():
-            own = pool if self.shares else None
-            return self.store.compute(self.points, self.measure, own, progress)
+        return self.runs(self.missing())
 
     def make(self, pool: Pool | None = None, progress: Progress | None = None) -> Summary:
         """Run the study, write its files and return its summary."""
         return self.summarise(self.rows(pool, progress))
+
+    def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
+        """Return the rows of all points, in their order."""
+        with alone() if self.timed else nullcontext():
+            return self.measured(pool if self.shares else None, progress)
+
+    def measured(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
+        """Return the rows of all points; saved ones are not measured again.
+
+        pool : does the work; None: this process, one point after the other. Raises SceneError if a
+        saved file is damaged.
+        """
+        named = {self.key(point): point for point in self.points}
+        found = {name: rows for name in named if (rows := self._saved(name)) is not None}
+        missing = {name: point for name, point in named.items() if name not in found}
+        for name, rows in (pool or partial(in_processes, 1))(self.measure, missing):
+            if rows is not None and self.folder is not None:
+                write_text(self.folder / f"{name}.json", json.dumps(rows, indent=1))
+            elif rows is None:
+                if self.lost is None:
+                    raise MemoryError(f"a point has no result: {DIED}")
+                rows = self.lost(named[name])
+            found[name] = rows
+            if progress:
+                progress(len(found) / len(named))
+        return [found[self.key(point)] for point in self.points]
+
+    def missing(self) -> list[Any]:
+        """Return the points without saved rows."""
+        return [point for point in self.points if self._saved(self.key(point)) is None]
+
+    def _saved(self, name: str) -> Any:
+        """Return saved rows; None without any, or if they are no longer valid."""
+        path = self.folder and self.folder / f"{name}.json"
+        if self.fresh or path is None or not path.is_file():
+            return None
+        found = read_rows(path)
+        return found if self.is_valid(found) else None

@@ -38,7 +38,7 @@ from jointwave.compare.scenes import bound_of, find, shipped
 from jointwave.compare.studies import hard_map, store
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.store import Row, Store
+from jointwave.compare.studies.store import Row
 from jointwave.results.dataset import energy_residual, scene_hash
 
 NAME = "stability"
@@ -178,9 +178,8 @@ def experiment(out: Path) -> Experiment:
 
     A point is a case or, with a `ratio`, a column of a map.
     """
-    saved = Store(out / NAME, key)
     points, told = [*hard_map.columns(), *hard_cases()], partial(summarise, out)
-    return Experiment(TITLE, points, saved, measure, told, runs)
+    return Experiment(TITLE, points, out / NAME, key, measure, told, runs)
 
 
 def key(point: Row) -> str:

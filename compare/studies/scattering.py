@@ -34,7 +34,7 @@ from jointwave.compare.studies import store
 from jointwave.compare.studies import transmission as waves
 from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.store import Row, Store
+from jointwave.compare.studies.store import Row
 from jointwave.compare.studies.transmission import SCENE, ParallelJoints
 from jointwave.compare.text import percent
 
@@ -126,8 +126,8 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
     def runs(left: Sequence[Row]) -> list[Run]:
         return [Run(name, scene_at(one), one["solver"]) for one in left]
 
-    saved, told = Store(out / name, key), partial(summarise, name, out)
-    return Experiment(TITLES[name], points(name, brief), saved, measure, told, runs, timed=True)
+    about = TITLES[name], points(name, brief), out / name, key
+    return Experiment(*about, measure, partial(summarise, name, out), runs, timed=True)
 
 
 def summarise(name: str, out: Path, found: list[Row]) -> Summary:

@@ -1,8 +1,4 @@
-"""The store of studies: each point is computed once, by any processes, and saved when done.
-
-A point is saved as a JSON file whose name is a hash of everything that determines its result,
-including the program. An interrupted study thus resumes, and a changed one starts afresh.
-"""
+"""The points of studies, computed by any processes, and the names that their results have."""
 
 import gc
 import hashlib
@@ -10,11 +6,10 @@ import json
 import os
 import signal
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import gettempdir
@@ -24,10 +19,8 @@ from typing import Any, TypeVar
 from joblib import Parallel, delayed
 
 from jointwave.cases.errors import SceneError, UnstableError
-from jointwave.compare.engines import Progress
 from jointwave.compare.runs.checkpoint.lock import exclusive
 from jointwave.compare.runs.checkpoint.signature import program
-from jointwave.compare.runs.output import read_rows, write_text
 from jointwave.compare.runs.processes import Processes
 
 P = TypeVar("P")
@@ -49,62 +42,6 @@ def key(*about: Any) -> str:
     """Return the key of a point: a hash of its determining data (JSON) and of this program."""
     text = json.dumps([*about, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-@dataclass(frozen=True)
-class Store:
-    """The results of a study's points.
-
-    A result is a row, or a list of rows. folder : of the files; None: nothing is saved. key :
-    returns the name of a point. is_valid : whether a saved result is still valid. fresh : take
-    none. lost : returns the result, not saved, of a point whose process has died; None: MemoryError
-    is raised.
-    """
-
-    folder: Path | None
-    key: Callable[[Any], str]
-    is_valid: Callable[[Any], bool] = lambda result: True
-    fresh: bool = False
-    lost: Callable[[Any], Any] | None = None
-
-    def compute(
-        self,
-        points: Sequence[Any],
-        work: Callable[[Any], Any],
-        pool: Pool | None = None,
-        progress: Progress | None = None,
-    ) -> list[Any]:
-        """Return the results of points, in order; saved ones are not recomputed.
-
-        work : returns the result of a point. pool : does the work; None: this process, one point
-        after the other. Raises SceneError if a saved file is damaged.
-        """
-        named = {self.key(point): point for point in points}
-        found = {name: done for name in named if (done := self._saved(name)) is not None}
-        missing = {name: point for name, point in named.items() if name not in found}
-        for name, result in (pool or partial(in_processes, 1))(work, missing):
-            if result is not None and self.folder is not None:
-                write_text(self.folder / f"{name}.json", json.dumps(result, indent=1))
-            elif result is None:
-                if self.lost is None:
-                    raise MemoryError(f"a point has no result: {DIED}")
-                result = self.lost(named[name])
-            found[name] = result
-            if progress:
-                progress(len(found) / len(named))
-        return [found[self.key(point)] for point in points]
-
-    def missing(self, points: Sequence[Any]) -> list[Any]:
-        """Return the points without a saved result."""
-        return [point for point in points if self._saved(self.key(point)) is None]
-
-    def _saved(self, name: str) -> Any:
-        """Return a saved result; None without one, or if it is no longer valid."""
-        path = self.folder and self.folder / f"{name}.json"
-        if self.fresh or path is None or not path.is_file():
-            return None
-        found = read_rows(path)
-        return found if self.is_valid(found) else None
 
 
 def in_processes(

@@ -28,7 +28,7 @@ from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.runs.run import execute
 from jointwave.compare.studies import store
 from jointwave.compare.studies.experiment import Experiment, Summary
-from jointwave.compare.studies.store import DIED, FAILURES, Store
+from jointwave.compare.studies.store import DIED, FAILURES
 from jointwave.compare.studies.sweep_keys import Case
 from jointwave.compare.studies.sweep_table import summarise
 from jointwave.results.dataset import scene_hash
@@ -60,11 +60,17 @@ def experiment(
         rows = [case.columns | row for case, some in points for row in some]
         return summarise(scene, list(cases[0].settings), out, pd.DataFrame(rows))
 
-    folder, lost = out and out / "points", lambda _: _failed(DIED)
-    whole = lambda rows: all(Path(row["file"]).is_file() for row in rows if "file" in row)  # noqa: E731
-    saved = Store(folder, key, whole, fresh, lost)
-    measure = partial(_outcome, work=work, fresh=fresh)
-    return Experiment(f"{len(cases)} points", cases, saved, measure, told)
+    return Experiment(
+        f"{len(cases)} points",
+        cases,
+        out and out / "points",
+        key,
+        partial(_outcome, work=work, fresh=fresh),
+        told,
+        is_valid=lambda rows: all(Path(row["file"]).is_file() for row in rows if "file" in row),
+        fresh=fresh,
+        lost=lambda _: _failed(DIED),
+    )
 
 
 def _outcome(case: Case, work: Work, fresh: bool) -> Rows:

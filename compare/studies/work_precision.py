@@ -25,7 +25,7 @@ from jointwave.compare.studies.experiment import Experiment, Summary
 from jointwave.compare.studies.findings import done, floor, judged, orders, sentences
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.measure import is_valid, measure, references
-from jointwave.compare.studies.store import Row, Store
+from jointwave.compare.studies.store import Row
 from jointwave.compare.studies.store import key as store_key
 from jointwave.compare.studies.study import Study, StudyPoint
 from jointwave.results.dataset import scene_hash
@@ -86,9 +86,8 @@ def experiment(study: Study, folder: Path) -> Experiment:
             *(Run("references", scene, name) for name, scene in references(valid)),
         ]
 
-    saved, told = Store(folder, key), partial(summarise, study, folder)
-    shares = study.timed, not study.timed
-    return Experiment(study.title, study.points(), saved, measure, told, runs, *shares)
+    told, shares = partial(summarise, study, folder), (study.timed, not study.timed)
+    return Experiment(study.title, study.points(), folder, key, measure, told, runs, *shares)
 
 
 def summarise(study: Study, folder: Path, rows: list[Row]) -> Summary:
