@@ -150,35 +150,30 @@ def labelled(variables: Mapping[str, tuple]) -> dict[str, tuple]:
 
 
 def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the attributes of a result: its scene and solver, `own` attributes of the run, and the
-    scene itself, last because of its length."""
-    text = scene.model_dump_json()
-    common = {
-        "engine": engine,
-        "kind": scene.kind,
-        "title": scene.title,
-        "variant": scene.name,
-        "scene_hash": scene_hash(scene, text),
-        **static_attributes(scene),
-        "effects": json.dumps(active_effects(scene)),
-        "warnings": json.dumps(warnings(scene)),
-    }
-    return {**common, **own, "scene": text}
-
-
-def static_attributes(scene: AnyScene) -> dict[str, Any]:
-    """Return the attributes of a result that describe its initial state.
+    """Return the attributes of a result: its scene and solver, its initial state, `own` attributes
+    of the run, and the scene itself, last because of its length.
 
     starts : "unloaded", "prestressed" or "at rest under gravity". prestress : in every section of a
     pillar, Pa, if any; in a rock mass the first sample is the initial state, from which
     displacement counts.
     """
-    prestress = scene.prestress
-    normal = getattr(prestress, "normal", None)
-    pressed = {} if normal is None else {"prestress": normal}
+    text, pressed = scene.model_dump_json(), getattr(scene.prestress, "normal", None)
+    starts = "unloaded" if scene.prestress is None else "prestressed"
     if scene.gravity is not None and scene.gravity.static:
-        return {"starts": "at rest under gravity", **pressed}
-    return {"starts": "unloaded" if prestress is None else "prestressed", **pressed}
+        starts = "at rest under gravity"
+    return {
+        "engine": engine,
+        "kind": scene.kind,
+        "title": scene.title,
+        "variant": scene.name,
+        "scene_hash": scene_hash(scene, text),
+        "starts": starts,
+        **({} if pressed is None else {"prestress": pressed}),
+        "effects": json.dumps(active_effects(scene)),
+        "warnings": json.dumps(warnings(scene)),
+        **own,
+        "scene": text,
+    }
 
 
 def energy_residual(result: xr.Dataset) -> float:

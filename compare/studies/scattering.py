@@ -126,8 +126,8 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
     def runs(left: Sequence[Row]) -> list[Run]:
         return [Run(name, scene_at(one), one["solver"]) for one in left]
 
-    about = TITLES[name], points(name, brief), out / name, key
-    return Experiment(*about, measure, partial(summarise, name, out), runs, timed=True)
+    wanted, told = points(name, brief), partial(summarise, name, out)
+    return Experiment(TITLES[name], wanted, out / name, key, measure, told, runs, timed=True)
 
 
 def summarise(name: str, out: Path, found: list[Row]) -> Summary:
