@@ -11,15 +11,6 @@ from collections.abc import Callable
 from math import sqrt
 
 
-def critical_step_of_modes(omega: float, eta: float) -> float:
-    """Return the critical step (s) where all dashpots are eta (s) times their springs.
-
-    omega : the largest natural frequency, rad/s. This is sqrt(4 eta^2 + 4 / omega^2) - 2 eta in
-    a form that loses no digits for strong dashpots.
-    """
-    return 4 / omega**2 / (sqrt(4 * eta**2 + 4 / omega**2) + 2 * eta)
-
-
 def critical_step(largest: Callable[[float, float], float], damped: bool) -> float:
     """Return the critical step, s.
 

@@ -76,12 +76,6 @@ def keys(model: type[BaseModel] = Scene) -> Iterator[tuple[str, FieldInfo]]:
                 yield table.dotted(name), field
 
 
-def default_of(field: FieldInfo) -> Any:
-    """Return the default of a key; None if its effect is then absent."""
-    value = field.get_default(call_default_factory=True)
-    return None if isinstance(value, BaseModel) or value in ([], {}) else value
-
-
 @cache
 def field_comments(model: type) -> Mapping[str, str]:
     """Return the comment of each field of a model, above or beside it, inherited fields

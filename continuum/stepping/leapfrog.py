@@ -141,11 +141,6 @@ class Leapfrog:
         if history is not None:
             self.state.history[:] = history
 
-    def throw(self, v: np.ndarray) -> None:
-        """Begin with velocities half a step before the first, m/s."""
-        self.place(v, self.state.v)
-        self.place(v, self.state.v_before)
-
     def drop(self, force: np.ndarray) -> None:
         """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
         fall = 0.5 * self.dt * force / self.problem.body.mass

@@ -10,7 +10,6 @@ from jointwave.compare.engines import ENGINES, solve
 from jointwave.compare.studies import hard_cases, hard_map
 from jointwave.compare.studies.hard_cases import NONE, STABLE, judged, title_of
 from jointwave.compare.studies.hard_map import boundary, cells_of, columns, computed
-from jointwave.numerics.critical_step import critical_step_of_modes
 
 CASES = hard_cases.hard_cases()
 #: Laws whose kernels take long to compile.
@@ -66,10 +65,10 @@ def test_no_cell_is_wrong_beyond_one_of_the_line():
 
 
 def test_line_is_the_critical_step_of_one_mode():
-    """x = omega dt / 2 and zeta = eta omega / 2 of the closed form that the engines use."""
-    omega, ratio = 3000.0, np.array([0.0, 0.01, 1.0, 10.0])
-    steps = [critical_step_of_modes(omega, 2 * z / omega) for z in ratio]
-    assert boundary(ratio) == pytest.approx(np.array(steps) * omega / 2, rel=1e-14)
+    """x = omega dt / 2 of dt = sqrt(4 eta^2 + 4 / omega^2) - 2 eta, zeta = eta omega / 2."""
+    ratio = np.array([0.0, 0.01, 1.0, 10.0])
+    expected = np.sqrt(4 * ratio**2 + 1) - 2 * ratio
+    assert boundary(ratio) == pytest.approx(expected, rel=1e-13)
 
 
 def test_files_table_and_sentences_tell_of_every_row(tmp_path, monkeypatch):

@@ -31,7 +31,8 @@ def drive(one, dt, steps, inertia):
     g, start = one.motion.history, one.motion.displacement(one.body.x).ravel()
     leapfrog = Leapfrog(free(one)._replace(forces=Load(one, dt, inertia)), dt, 1, energy=False)
     leapfrog.start(g(0.0) * start)
-    leapfrog.throw((g(0.0) - g(-dt)) / dt * start)
+    for before in (leapfrog.state.v, leapfrog.state.v_before):
+        leapfrog.place((g(0.0) - g(-dt)) / dt * start, before)
     leapfrog.take(0, steps, NEVER)
     return leapfrog.u
 

@@ -9,7 +9,6 @@ from pydantic.fields import FieldInfo
 from jointwave.cases.schema.keys import (
     SOLVERS,
     TableOf,
-    default_of,
     field_comments,
     in_words,
     model_in,
@@ -59,8 +58,9 @@ def _anchor(path: str, prefix: str) -> str:
 def _default(field: FieldInfo) -> str:
     if field.is_required():
         return "**required**"
-    value = default_of(field)
-    return "absent" if value is None else f"`{_toml(value)}`"
+    value = field.get_default(call_default_factory=True)
+    absent = value is None or isinstance(value, BaseModel) or value in ([], {})
+    return "absent" if absent else f"`{_toml(value)}`"
 
 
 def _toml(value: Any) -> str:
