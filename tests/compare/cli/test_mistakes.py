@@ -44,6 +44,10 @@ BAD = [
     (("picture", "."), ".: has no result of an engine, such as dem.nc"),
     (("picture", "rock-mass/tunnel", "--explode", "0.2"), f"{OF_SPACE} rock-mass/tunnel\n"),
     (("picture", ".", "--explode", "0.2"), f"{OF_SPACE} a folder\n"),
+    (
+        ("compare", SCENE, "--read", "--sweep", "load.period=1,2"),
+        "--read: is not of a sweep: --out",
+    ),
     (("new", "x", "--from", "nothing"), "is neither a file nor a shipped scene"),
 ]
 
