@@ -46,13 +46,6 @@ def load_history(scene: Scene) -> LoadHistory:
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
 
 
-def force_history(scene: AnyScene, load: Any) -> LoadHistory:
-    """Return a load of a scene that is a force on its rock as a function of time."""
-    if scene.is_column:
-        return load_history(scene)
-    return velocity_of(load, load.amplitude)
-
-
 def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:
     """Return the velocity of a pulse of this amplitude that is one, or an acceleration."""
     found = history_of(pulse, amplitude)

@@ -1,14 +1,14 @@
 """Forces on a body: gravity, pressures, point forces, compliant bases, excavations, and waves that
 enter through quiet sides."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.incident import FaceTractions, FreeField, IncidentField, free_field, tractions
-from jointwave.cases.loads import force_history, step_means
+from jointwave.cases.loads import load_history, step_means, velocity_of
 from jointwave.cases.material.quiet_sides import base_traction
 from jointwave.cases.partition.shape import BESIDE, loaded_lines, shape_of
 from jointwave.cases.scene_type import AnyScene
@@ -58,14 +58,11 @@ def released(scene: AnyScene, body: Body) -> np.ndarray | None:
 
 def pushes(scene: AnyScene, body: Body) -> list[Push]:
     """Return the loads of a scene that are forces."""
-    of_kind: dict[str, Any] = {
-        "pressure": _pressure,
-        "force": _force,
-        "base": _base,
-        "end": end_force,
-    }
+    if scene.is_column:
+        return [Push(end_force(scene, body, one), load_history(scene)) for one in scene.pushes]
+    of_kind = {"pressure": _pressure, "force": _force, "base": _base}
     return [
-        Push(of_kind[getattr(one, "kind", "end")](scene, body, one), force_history(scene, one))
+        Push(of_kind[one.kind](scene, body, one), velocity_of(one, one.amplitude))
         for one in scene.pushes
     ]
 
