@@ -5,6 +5,7 @@ import json
 from functools import partial
 from typing import Any
 
+from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.cli import terminal
 from jointwave.compare.cli.commands import Compare, Report
