@@ -34,9 +34,9 @@ def compare(asked: Compare) -> None:
     """Compare the solutions of a scene or of every case of a sweep, or print what it would cost."""
     if asked.swept or asked.members:
         idle = {"--all": asked.every, "--read": asked.reads, "--results": asked.results}
-        for option in (option for option, given in idle.items() if given):
+        if given := [option for option, there in idle.items() if there]:
             allowed = "is not of a sweep: --out keeps the tables and results of each point"
-            raise SceneError(option, "", None, allowed)
+            raise SceneError(given[0], "", None, allowed)
 
         def work_of(scenes: list[AnyScene]) -> Work:
             curves = curves_of(asked.given, scenes, asked.strict, asked.align)

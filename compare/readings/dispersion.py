@@ -76,8 +76,7 @@ def dispersion(
 
 def _along(places: np.ndarray) -> np.ndarray:
     """Return receivers' places [space, receiver] along the line from the first to the last, m."""
-    last = places[:, -1]
-    line = last / (np.linalg.norm(last) or 1.0)
+    line = places[:, -1] / (np.linalg.norm(places[:, -1]) or 1.0)
     x = line @ places
     aside = np.abs(np.outer(line, x) - places).max()
     if not aside <= 1e-6 * np.abs(x).max() > 0:

@@ -22,7 +22,6 @@ import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
-from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import solved
 from jointwave.compare.exact.bar.transfer import Bar, end_of, rocks
@@ -59,7 +58,9 @@ def bar_of(scene: Scene, resolved: bool) -> Bar:
         model, moduli = "jointed", [one.intact_modulus or 0.0 for one in p.each]
         compliance, etas = 1 / p.own_stiffness, p.own_time_constant
     start, end = (
-        end_of(kind, rock.impedance, *(_half_joint(rock) if resolved else ()))
+        end_of(kind, rock.impedance, 0.5 / rock.regular_own_stiffness, rock.time_constant or 0.0)
+        if resolved  # half a joint is before it
+        else end_of(kind, rock.impedance)
         for kind, rock in ((scene.ends.start, p.at_start), (scene.ends.end, p.at_end))
     )
     return Bar(
@@ -71,11 +72,6 @@ def bar_of(scene: Scene, resolved: bool) -> Bar:
         start=start,
         end=end,
     )
-
-
-def _half_joint(rock: JointedRock) -> tuple[float, float]:
-    """Return compliance (m/Pa) and time constant (s) of half a joint of a rock."""
-    return 1 / (2 * rock.regular_own_stiffness), rock.time_constant or 0.0
 
 
 def _solver(

@@ -25,7 +25,8 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
     largest = ledgers.filter(COLUMNS.values()).abs().max().max()
     if ledgers.empty or not largest:
         return []
-    unit = unit_for("J/m" if comparisons[0].scene.in_plane else "J", largest)
+    joule = "J/m" if comparisons[0].scene.in_plane else "J"
+    unit = unit_for(joule, largest)
     variants = ledgers.groupby("variant", sort=False)
     with chart(1, len(variants), [2.2, 0.8], "time (ms)") as (figure, axes):
         for row in axes[0]:
@@ -53,7 +54,8 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
         f"{', '.join(f'{label_of(str(name))} {size:.1g}' for name, size in worst.items())}."
     )
     title = f"Energy over time: imbalance at most {worst.max():.1g} of the largest work"
-    return [SceneFigure(f"{name}-energy", title, caption, figure, ledgers, folded=True)]
+    table = ledgers.rename(columns=lambda head: head.replace("(J)", f"({joule})"))
+    return [SceneFigure(f"{name}-energy", title, caption, figure, table, folded=True)]
 
 
 def ledgers_of(comparisons: list[Comparison]) -> pd.DataFrame:
