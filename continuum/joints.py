@@ -42,10 +42,9 @@ def resolved_joints(
     else:
         number, etas = p.soft, p.joint_time_constant
         normal = _excess(p.excess_compliance, p.regular)
-        same = np.isclose(p.shear_stiffness, p.regular_shear_stiffness, rtol=1e-9, atol=0)
-        compliance = np.where(same, 0.0, 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness)
-        shear = _excess(compliance, p.regular_shear_stiffness)
-        differs = (p.excess_compliance != 0) | (shears & (compliance != 0)) | _fails(p, shears)
+        shear = _excess(p.excess_shear_compliance, p.regular_shear_stiffness)
+        differs = (p.excess_compliance != 0) | (shears & (p.excess_shear_compliance != 0))
+        differs |= _fails(p, shears)
         number = number[differs[number]]
     return Resolved(np.setdiff1d(number, meshed), normal, shear, etas)
 

@@ -181,8 +181,12 @@ class Properties(JointedRock, Strength):
 
         1/K = 1/K'_n - 1/K'_n(regular) [N - 1]; exactly zero for a joint as stiff as the others.
         """
-        same = np.isclose(self.stiffness, self.regular, rtol=1e-9, atol=0)
-        return np.where(same, 0.0, 1 / self.stiffness - 1 / self.regular)
+        return _beyond(self.stiffness, self.regular)
+
+    @property
+    def excess_shear_compliance(self) -> np.ndarray:
+        """The same of shear, m/Pa [N - 1]."""
+        return _beyond(self.shear_stiffness, self.regular_shear_stiffness)
 
     @property
     def damps_alone(self) -> np.ndarray:
@@ -195,3 +199,8 @@ class Properties(JointedRock, Strength):
         usual = self.ordinary_time_constant
         same = np.isclose(self.joint_time_constant, usual, rtol=1e-9, atol=0)
         return ~same & (self.excess_compliance == 0)
+
+
+def _beyond(stiffness: np.ndarray, regular: float | np.ndarray) -> np.ndarray:
+    same = np.isclose(stiffness, regular, rtol=1e-9, atol=0)
+    return np.where(same, 0.0, 1 / stiffness - 1 / regular)

@@ -3,7 +3,7 @@
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.loads import load_history, velocity_of
-from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.solvers.record import Answer
@@ -31,7 +31,10 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
         "local damping": (bool(p.local_damping), "the damping is local and not linear"),
         "thick layers": (has_thick_layer(scene), "a soft layer has a thickness"),
         "no tension": (not p.tension.all(), "a joint carries no tension"),
-        "damped joints": (joints_are_damped(p), "the joints are damped"),
+        "damped joints": (
+            p.joint_time_constant is not None and p.joint_time_constant.any(),
+            "the joints are damped",  # in damped rock all of them
+        ),
         "damped rock": (bool(p.time_constant), "the rock is damped"),
         "quality factor": (scene.rock.quality_factor is not None, "the rock has a quality_factor"),
         "soft layers": (p.excess_compliance.any(), "a soft layer reflects"),
@@ -53,11 +56,6 @@ def is_free(scene: Scene) -> bool:
 def static_stress(scene: Scene) -> float:
     """Return the stress in every section before the load, Pa, without gravity."""
     return scene.prestress.normal if scene.prestress else 0.0
-
-
-def joints_are_damped(p: Properties) -> bool:
-    """Return whether any joint has a dashpot; in damped rock all joints have one."""
-    return p.joint_time_constant is not None and bool(p.joint_time_constant.any())
 
 
 def has_thick_layer(scene: Scene) -> bool:

@@ -82,7 +82,7 @@ def _column(scene: Scene) -> tuple[Bar, float]:
     if scene.is_uniform and load.is_across:
         (rock,), impedance = bar.rocks, p.shear_impedance
         modulus = p.shear_modulus
-        compliance = 1 / p.shear_stiffness - 1 / p.regular_shear_stiffness
+        compliance = p.excess_shear_compliance
         if p.own_shear_stiffness is not None and p.intact_modulus is not None:
             modulus = p.intact_modulus / (2 * (1 + scene.rock.intact_poisson))
             compliance = 1 / p.own_shear_stiffness

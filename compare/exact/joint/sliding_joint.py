@@ -14,7 +14,6 @@ Valid for blocks that do not rotate, a load across the axis, absorbing ends, one
 or with friction under the prestress, and all else elastic and undamped.
 """
 
-from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
@@ -44,38 +43,29 @@ def applies(scene: Scene) -> Answer:
     p, load, ends = calibrate(scene), scene.load, {scene.ends.start, scene.ends.end}
     if not load.is_across or load.direction[1] or load.arm or scene.motion.rotation != "none":
         return Answer("there is no plane shear wave: needs a load across and no rotation")
-    slips, compliance = _slips(p), _excess_compliance(p)
+    slips, compliance, rated, snaps = _slips(p), p.excess_shear_compliance, p.direct_effect, False
+    coheres = rated is not None and p.cohesion is not None and p.cohesion[rated > 0].any()
+    if p.weakening_distance is not None and slips.any():
+        joint = the_joint(scene, p)
+        snaps = joint.fall * joint.compliance >= 1
     return holds(
         scene,
         HELD,
         (not ends <= {"quiet", "matched"}, "an end reflects"),
         (np.count_nonzero(slips) != 1, "not exactly one joint can slip"),
-        *_against_rate(scene, p),
+        (bool(coheres), "the rate-and-state joint has cohesion"),
+        (
+            rated is not None and static_stress(scene) <= 0,
+            "the rate-and-state joint has no normal stress",
+        ),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
-        (_snaps(scene, p), "friction falls with slip faster than the joint unloads"),
+        (snaps, "friction falls with slip faster than the joint unloads"),
         (
             p.dilation is not None and bool(compliance.any() or p.excess_compliance.any()),
             "the joint that dilates is softer than the others",
         ),
     )
-
-
-def _against_rate(scene: Scene, p: Properties) -> Iterator[tuple[bool, str]]:
-    """Yield conditions that exclude the solution of a joint with rate-dependent friction."""
-    if p.direct_effect is not None:
-        rated = p.direct_effect > 0
-        holds_still = p.cohesion is not None and bool(p.cohesion[rated].any())
-        yield holds_still, "the rate-and-state joint has cohesion"
-        pressed = scene.prestress is not None and scene.prestress.normal > 0
-        yield not pressed, "the rate-and-state joint has no normal stress"
-
-
-def _snaps(scene: Scene, p: Properties) -> bool:
-    if p.weakening_distance is None or not _slips(p).any():
-        return False
-    joint = the_joint(scene, p)
-    return joint.fall * joint.compliance >= 1
 
 
 def solve(scene: Scene) -> xr.Dataset:
@@ -128,7 +118,7 @@ def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     cohesion = 0.0 if p.cohesion is None else float(p.cohesion[j])
     friction = 0.0 if p.friction is None else float(p.friction[j])
     strength = max(cohesion + friction * normal, 0.0)
-    found = SlipJoint(float(p.joint_y[j]), float(_excess_compliance(p)[j]), strength)
+    found = SlipJoint(float(p.joint_y[j]), float(p.excess_shear_compliance[j]), strength)
     left = cohesion if p.residual_cohesion is None else float(p.residual_cohesion[j])
     lost = max(cohesion - left, 0.0)
     found = found._replace(friction=friction, dynamic_friction=friction, lost=lost)
@@ -148,12 +138,6 @@ def _slips(p: Properties) -> np.ndarray:
     if p.cohesion is not None:
         return p.cohesion < UNLIMITED
     return np.full(len(p.stiffness), p.friction is not None)
-
-
-def _excess_compliance(p: Properties) -> np.ndarray:
-    regular = p.regular_shear_stiffness
-    same = np.isclose(p.shear_stiffness, regular, rtol=1e-9, atol=0)
-    return np.where(same, 0.0, 1 / p.shear_stiffness - 1 / regular)
 
 
 SOLVER = Solver(
