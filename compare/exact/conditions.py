@@ -48,11 +48,6 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
     return next((Answer(why) for there, why in (*beyond, *against) if there), Answer())
 
 
-def is_free(scene: Scene) -> bool:
-    """Return whether both ends are free."""
-    return (scene.ends.start, scene.ends.end) == ("free", "free")
-
-
 def static_stress(scene: Scene) -> float:
     """Return the stress in every section before the load, Pa, without gravity."""
     return scene.prestress.normal if scene.prestress else 0.0

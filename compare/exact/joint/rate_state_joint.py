@@ -22,7 +22,6 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.histories import LoadHistory
-from jointwave.cases.material.calibrate import Properties
 from jointwave.compare.exact.joint.trajectory import SHORTEST, Trajectory, edges_of, peak_of
 
 SPANS = 500  # of the whole time: no step is longer than one
@@ -74,13 +73,6 @@ class RateJoint(NamedTuple):
 def _exp(x: float) -> float:
     """Return e^x, of a finite number."""
     return exp(min(x, LARGE))
-
-
-def rate_joint(p: Properties, j: int, pressure: float, compliance: float) -> RateJoint:
-    """Return joint j under a pressure (Pa), with its additional compliance (m/Pa)."""
-    names = "friction", "direct_effect", "evolution_effect", "critical_slip_distance"
-    own = (float(getattr(p, name)[j]) for name in (*names, "reference_rate", "initial_state"))
-    return RateJoint(pressure, *own)._replace(compliance=compliance)
 
 
 class RateStateWave:

@@ -22,7 +22,7 @@ import xarray as xr
 
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import sample_times
-from jointwave.cases.schema.law_parts import UNLIMITED
+from jointwave.cases.schema.law_parts import PARTS, UNLIMITED
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import entering
 from jointwave.compare.exact.conditions import LAYERS, holds, static_stress
@@ -34,6 +34,7 @@ from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 WORN = ("weakening", "dilation", "rate and state")
+RATED = next(part.without for part in PARTS if part.name == WORN[-1])
 HELD = ("spatial motion", "prestress", "fixed start", *WORN, *LAYERS)
 ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
 
@@ -90,8 +91,8 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
     joint, Z, axis = the_joint(scene, p), p.shear_impedance, np.array(scene.load.direction)[:, None]
     passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
-        j, pressure = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
-        rated = rate_state_joint.rate_joint(p, j, pressure, joint.compliance)
+        own = (float(getattr(p, name)[_slips(p)][0]) for name in ("friction", *RATED))
+        rated = rate_state_joint.RateJoint(static_stress(scene), *own, joint.compliance)
         rest, tolerance = joint.y / p.shear_speed, rate_state_joint.TOLERANCES[which]
         passed = rate_state_joint.RateStateWave(rated, Z, load, times[-1], tolerance, rest)
     else:
