@@ -92,7 +92,8 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
     passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
         own = (float(getattr(p, name)[_slips(p)][0]) for name in ("friction", *RATED))
-        rated = rate_state_joint.RateJoint(static_stress(scene), *own, joint.compliance)
+        rated = rate_state_joint.RateJoint(static_stress(scene), *own)
+        rated = rated._replace(compliance=joint.compliance)
         rest, tolerance = joint.y / p.shear_speed, rate_state_joint.TOLERANCES[which]
         passed = rate_state_joint.RateStateWave(rated, Z, load, times[-1], tolerance, rest)
     else:
