@@ -168,8 +168,7 @@ def difference(one: Map, other: Map) -> Map:
     """Return the second map less the first, on the faces of the one that has more."""
     if one.quantity == snapshots.SLIP:
         return one._replace(values=other.values - one.values)
-    if len(one.corners) <= len(other.corners):
-        there = one.values[_nearest(one.corners, other.corners.mean(axis=1))]
-        return other._replace(values=other.values - there)
-    there = other.values[_nearest(other.corners, one.corners.mean(axis=1))]
-    return one._replace(values=there - one.values)
+    finer = max(other, one, key=lambda of: len(of.corners))
+    faces = finer.corners.mean(axis=1)
+    ours, theirs = (of.values[_nearest(of.corners, faces)] for of in (one, other))
+    return finer._replace(values=theirs - ours)

@@ -42,7 +42,6 @@ from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
 Waves = dict[str, Any]
-PAPER_TERMS = 100
 SAFETY = 2.0
 ROUND_OFF = 1e-12, 1e-9  # of a waveform's peak, without and with damping
 RUN = 64  # samples

@@ -78,12 +78,11 @@ def curves_of(comparison: Comparison) -> Curves:
             if (row != 0).any("time").all() and row["distance"].diff("receiver").min() > 0:
                 with suppress(SceneError):  # receivers that are not on a line
                     found[solution] = _measured(result, row)
-    scene = comparison.scene
     if not found:
         return found
     frequency = next(iter(found.values()))[TRANSFER].index.values
     with suppress(SceneError):  # no theory of this scene
-        theory = dispersion_theory(scene, frequency)
+        theory = dispersion_theory(comparison.scene, frequency)
         for rock in theory.rock.values:
             speed, quality = (theory.sel(rock=rock)[n] for n in ("phase_speed", "quality"))
             curves = {SPEED: speed.to_series(), LOSS: 1 / quality.to_series()}
