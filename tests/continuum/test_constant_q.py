@@ -39,7 +39,7 @@ def of_bar(body):
     return Problem(body, readings(body), mechanisms=found)
 
 
-@pytest.mark.parametrize(("dim", "number"), [(1, 5), (2, 4), (3, 20)])
+@pytest.mark.parametrize(("dim", "number"), [(2, 4), (3, 20)])
 def test_a_mode_rings_and_decays_as_the_root_of_leapfrog_says(dim, number):
     """Rock of one quality factor has the modes of elastic rock."""
     body = stack(dim, 1, 4 if dim < 3 else 2, 1)

@@ -19,13 +19,14 @@ HOLE = [[4.0, 4.0], [7.0, 4.0], [7.0, 6.0], [4.0, 6.0]]
 
 @pytest.fixture
 def excavated(rock_mass, joint):
-    """Return 12 m by 10 m in blocks of 1 m by 1 m, stressed, with a hole of 3 m by 2 m; keyword
-    arguments of the joints, and tables changed."""
+    """Return 12 m by 10 m in blocks of 1 m by 1 m, stressed, with a hole of 3 m by 2 m, one set
+    twice as stiff as the other; keyword arguments of the joints, and tables changed."""
 
     def scene(law=(), **tables):
+        stiff = {"normal_stiffness": 2e10, "shear_stiffness": 8e9} | dict(law)
         sets = [
             joint(name="bed", dip=0.0, spacing=1.0, through=[0.0, 0.0], **dict(law)),
-            joint(name="cross", dip=90.0, spacing=1.0, through=[0.0, 0.0], **dict(law)),
+            joint(name="cross", dip=90.0, spacing=1.0, through=[0.0, 0.0], **stiff),
         ]
         table = {
             "domain": {"size": [12.0, 10.0], "openings": [HOLE]},
