@@ -18,7 +18,7 @@ SPALL = {
     "joints__tensile_strength": 1e5,
     "joints__fracture_energy": 5.0,
     "time__duration": 0.02,
-    "record": {"velocity": [7.75], "fields": 4e-3, "energy": False},
+    "record": {"velocity": [7.75], "fields": 4e-3},
 }
 
 

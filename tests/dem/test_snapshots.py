@@ -71,8 +71,9 @@ TOPPLING = {
     "ends__start": "free",
     "ends__end": "free",
     "joints__tension": False,
+    "joints__friction_angle": 20.0,
     "time__duration": 0.1,
-    "record": {"velocity": [0.25, 0.75], "interval": 5e-5, "fields": 5e-5, "energy": False},
+    "record": {"velocity": [0.25, 0.75], "interval": 5e-5, "fields": 5e-5},
 }
 
 

@@ -98,8 +98,7 @@ def test_a_block_that_is_not_cut_bears_its_weight_as_a_whole(block):
     assert found.traction.values[0, 0] == pytest.approx(weight, rel=1e-5)
 
 
-@pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("make", (slopes, opening))
+@pytest.mark.parametrize(("make", "seed"), [(slopes, 0), (slopes, 1), (opening, 1)])
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_static_state_is_the_same_however_motion_is_damped_and_stays(engine, make, seed):
     """Each of some hundred freedoms is in balance within 1e-10 of the forces at work. What is left

