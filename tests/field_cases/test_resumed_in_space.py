@@ -12,20 +12,22 @@ from tests.field_cases.scenes import ENGINES, mass
 STIFF = {"normal_stiffness": 1e10, "shear_stiffness": 5e9, "spacing": 1.0}
 SLIPS = {"friction_angle": 25.0, "tension": False}
 WEAKENS = SLIPS | {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-4}
-DILATES = SLIPS | {"dilation_angle": 8.0, "dilation_distance": 1e-3, "damping_ratio": 0.02}
+DILATES = {"dilation_angle": 8.0, "dilation_distance": 1e-3, "damping_ratio": 0.02}
 AGES = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-5}
 AGES |= SLIPS | {"reference_rate": 1e-6}
 BREAKS = {"friction_angle": 25.0, "cohesion": 2e5, "tensile_strength": 1e5, "fracture_energy": 1.0}
-CLOSES = {"maximum_closure": 3e-4, "tension": False, "damping_ratio": 0.05}
+CLOSES = {"maximum_closure": 3e-4, "damping_ratio": 0.05}
 BASE = {"kind": "base", "side": "bottom", "quantity": "velocity", "direction": [0.6, 0.0, 0.8]}
 SHAKEN = {"loads": [BASE | {"shape": "ricker", "period": 0.004, "amplitude": 0.2}]}
 
 #: By name: the laws of beds and walls, and what else is changed; None leaves a table out.
 RUNS = {
-    "weakening and dilation under weight": (WEAKENS, DILATES, {"prestress": None, "gravity": {}}),
+    "weakening, dilation, softening and closure, under weight": (
+        BREAKS | CLOSES,
+        WEAKENS | DILATES,
+        SHAKEN | {"prestress": None, "gravity": {}},
+    ),
     "rate and state on a quiet base": (AGES, AGES, SHAKEN | {"boundaries": {"bottom": "quiet"}}),
-    "softening and closure, shaken": (BREAKS, CLOSES, SHAKEN | {"prestress": None}),
-    "sudden gravity": (WEAKENS, DILATES, {"prestress": None, "gravity": {"static": False}}),
 }
 
 

@@ -11,9 +11,9 @@ IDLE = {
     "tension never asked": ("pillar", {"joints__tension": False}),
     "one cut": ("pillar", {"soft_layers": [{"y": 20.0, "tension": False}]}),
     "ledger": ("pillar", {"record__energy": False}),
-    "one joint's strength never reached": (
+    "strength never reached": (
         "pillar",
-        {"soft_layers": [{"y": 20.0, "tensile_strength": 1e12, "fracture_energy": 1e18}]},
+        {"joints": {"tensile_strength": 1e12, "fracture_energy": 1e18}},
     ),
     "weightless": (
         "pillar",
