@@ -6,6 +6,7 @@ import pytest
 from jointwave import dem
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.run import plan
 
 SEGMENTS = [
     {"y": [2.0, 4.0], "density": 5000.0, "block": 0.25},
@@ -52,7 +53,7 @@ STEPS, EVERY = 100_000, 250
 
 def critical(scene):
     """Return the critical step of a scene, s."""
-    return dem.simulate(scene).attrs["critical_dt"]
+    return plan(scene).critical
 
 
 @pytest.mark.parametrize(("fixture", "length", "changes"), SCENES.values(), ids=SCENES)

@@ -11,6 +11,7 @@ import pytest
 from jointwave import load, misfit, simulate
 from jointwave.cases.loads import velocity_of
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.dem.run import plan
 from tests.field_cases.scenes import ENGINES, mass
 
 L, RHO, E, G = 10.0, 2400.0, 8.64e10, 8.64e10 / 2.5
@@ -107,5 +108,5 @@ def test_rock_that_is_all_but_rigid_does_not_decide_the_step():
     of a free end at most, sqrt((2 * 100 + 1) / 4) = 7.1 in a long chain."""
     stiff = load(PILLAR, changes={"rock.intact_modulus": 1e20})
     free = load(PILLAR, changes={"rock.intact_modulus": 1e20, "ends.end": "free"})
-    steps = [simulate(one, "dem").attrs["critical_dt"] for one in (free, stiff)]
+    steps = [plan(one).critical for one in (free, stiff)]
     assert steps[0] / steps[1] == pytest.approx(np.sqrt(201 / 4), rel=0.01)

@@ -14,22 +14,12 @@ SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
 DOWN = {"direction": [0, 1, 0]}
 SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.02, "quantity": "velocity"}
 CHAINS = {
-    "strongly damped": {"joints__damping_ratio": 0.5},
-    "damped soft layer": {"soft_layers": SOFT, "joints__damping_ratio": 0.02},
+    "strongly damped, soft layer": {"soft_layers": SOFT, "joints__damping_ratio": 0.5},
     "quiet start": {"ends": {"start": "quiet", "end": "fixed"}},
     "matched start": {"ends__start": "matched", "ends__end": "matched"},
     "Rayleigh damping": {
-        "damping__rayleigh": {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]}
-    },
-    "gravity between two fixed ends": {
-        "gravity": DOWN,
-        "ends": {"start": "fixed", "end": "fixed"},
-        "load": SHAKEN,
-    },
-    "base of given acceleration, dashpots": {
-        "ends": {"start": "fixed", "end": "quiet"},
-        "load": {**SHAKEN, "amplitude": 100.0, "quantity": "acceleration"},
-        "joints__damping_ratio": 0.1,
+        "ends": {"start": "matched", "end": "fixed"},
+        "damping__rayleigh": {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]},
     },
     "base moved against the axis, with all linear effects": {
         "ends": {"start": "fixed", "end": "fixed"},
@@ -52,11 +42,12 @@ ROWS = {
         "ends": {"start": "fixed", "end": "quiet"},
         "load": {**BASE, "amplitude": 100.0, "quantity": "acceleration"},
     },
-    "soft layer, mass damping": {
+    "all linear effects": {
+        "ends": {"start": "quiet", "end": "fixed"},
         "soft_layers": LAYER,
-        "ends": {"start": "matched", "end": "quiet"},
-        "joints__damping_ratio": 0.02,
-        "damping__mass_proportional": 50.0,
+        "damping__mass_proportional": 30.0,
+        "gravity": {"direction": [0.6, 0.8, 0.0], "static": False},
+        "prestress": {"normal": 1e5},
     },
     "blocks that do not turn": {
         "motion__rotation": "none",
@@ -114,18 +105,6 @@ LEDGERS = {
     "large step": ("pillar", {"numerics__dem__step_fraction": 0.9}),
     "local damping": ("pillar", {"damping__local": 0.3, "ends__end": "quiet"}),
     "segments": ("pillar", {"segments": SEGMENTS, "joints__damping_ratio": 0.1, "ends": HELD}),
-    "all, in space": (
-        "row",
-        {
-            "ends": {"start": "quiet", "end": "fixed"},
-            "soft_layers": LAYER,
-            "joints__damping_ratio": 0.05,
-            "damping__mass_proportional": 30.0,
-            "gravity": {"direction": [0.6, 0.8, 0.0], "static": False},
-            "prestress": {"normal": 1e5},
-        },
-    ),
-    "slip": ("row", {"joints": SLIP}),
     "slip, dashpots, prestress": (
         "row",
         {"joints": SLIP | {"damping_ratio": 0.05}, "prestress": {"normal": 1e5}, "ends": OPEN},
