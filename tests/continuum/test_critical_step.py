@@ -8,6 +8,7 @@ from scipy.sparse import csr_matrix
 from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.continuum import simulate
+from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import body_of
 from jointwave.continuum.space.evaluation import blocks_of_nodes
@@ -44,7 +45,7 @@ def stepped(short, model, dim, changes, fraction):
     the true one, from below."""
     record = {"stress": [1.0], "velocity": [0.3], "interval": 5e-5}
     probe = short(**changes, record=record, time__duration=1e-4)
-    dt = fraction * simulate(probe, model, dim=dim).attrs["critical_dt"]
+    dt = fraction * plan_of(probe, model, dim=dim).critical
     forced = {"step_fraction": fraction, "allow_unstable": True}
     forced = {f"numerics__continuum__{key}": value for key, value in forced.items()}
     record |= {"interval": EVERY * dt}
@@ -77,7 +78,7 @@ def test_slip_and_opening_do_not_lower_it(joints, short):
     but for a tenth."""
     load = {"shape": "sine", "amplitude": 1e5, "period": 1e-3, "direction": [0.6, 0.8, 0.0]}
     changes = {"load": load, "joints": joints, "numerics__continuum__step_fraction": 0.999}
-    dt = 0.999 * simulate(short(**changes), dim=2).attrs["critical_dt"]
+    dt = 0.999 * plan_of(short(**changes), dim=2).critical
     changes |= {"record": {"interval": dt}, "time__duration": 4000 * dt}
     result = simulate(short(**changes), dim=2)
     assert result.attrs["steps"] == 4000
@@ -91,7 +92,7 @@ def test_uniform_lumped_linear_bar_is_critical_when_a_wave_crosses_one_element(p
         **{"numerics__continuum__order": 1, "numerics__continuum__elements_per_block": 1}
     )
     p = calibrate(scene)
-    critical = simulate(scene, "equivalent").attrs["critical_dt"]
+    critical = plan_of(scene, "equivalent").critical
     assert critical == pytest.approx(p.spacing / p.bar_speed, rel=1e-4)
     assert critical <= p.spacing / p.bar_speed * (1 + 1e-12)
 

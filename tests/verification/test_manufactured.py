@@ -29,7 +29,7 @@ def drive(one, dt, steps, inertia):
     inertia : g'' (1/s2) at a time (s).
     """
     g, start = one.motion.history, one.motion.displacement(one.body.x).ravel()
-    leapfrog = Leapfrog(free(one)._replace(forces=Load(one, dt, inertia)), dt, 1, energy=False)
+    leapfrog = Leapfrog(free(one)._replace(forces=Load(one, dt, inertia)), dt, 1)
     leapfrog.start(g(0.0) * start)
     for before in (leapfrog.state.v, leapfrog.state.v_before):
         leapfrog.place((g(0.0) - g(-dt)) / dt * start, before)
