@@ -104,7 +104,7 @@ def alike(found, expected):
 
 
 @pytest.mark.parametrize(
-    ("joints", "dims"), zip(JOINTS.values(), DIMENSIONS, strict=True), ids=JOINTS
+    ("joints", "dims"), [*zip(JOINTS.values(), DIMENSIONS, strict=True)], ids=JOINTS
 )
 def test_jointed_rock_moves_alike_in_all_dimensions(joints, dims, moved):
     compare(*moved("jointed", *dims, **{"load": SINE, **ROCK, **joints}))
