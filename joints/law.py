@@ -10,7 +10,7 @@ penetration is negative. The shear traction acts on the right block.
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any, NamedTuple, overload
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -192,11 +192,7 @@ def parts_of(law: Law) -> LawFlags:
     )
 
 
-@overload
-def uniform(values: None) -> None: ...
-@overload
-def uniform(values: np.ndarray) -> float | bool | np.ndarray: ...
-def uniform(values: np.ndarray | None) -> float | bool | np.ndarray | None:
+def uniform(values: Any) -> Any:
     """Return the common value of an array if there is one, else the array; None for None."""
     if values is None:
         return None
@@ -214,20 +210,22 @@ def law(
 ) -> Law:
     """Return the law of joints with these properties [n], in its smallest form.
 
-    stiffness, shear_stiffness Pa/m; time_constant eta of both in s, None without dashpots;
-    tension: whether it is carried; strengths: the other fields of the law, None where no joint has
-    them.
+    stiffness, shear_stiffness Pa/m; time_constant eta in s, of both [n] or of each [2, n], None
+    without dashpots; tension: whether it is carried; strengths: the other fields of the law, None
+    where no joint has them.
     """
 
-    def viscosity(stiffness: np.ndarray | None) -> np.ndarray | None:
-        return None if stiffness is None or time_constant is None else stiffness * time_constant
+    def viscosity(stiffness: np.ndarray | None, row: int) -> np.ndarray | None:
+        if stiffness is None or time_constant is None:
+            return None
+        return stiffness * np.broadcast_to(time_constant, (2, len(stiffness)))[row]
 
     return Law(
         normal_stiffness=uniform(stiffness),
-        normal_viscosity=uniform(viscosity(stiffness)),
+        normal_viscosity=uniform(viscosity(stiffness, 0)),
         carries_tension=None if tension.all() else uniform(tension),
         shear_stiffness=uniform(shear_stiffness),
-        shear_viscosity=uniform(viscosity(shear_stiffness)),
+        shear_viscosity=uniform(viscosity(shear_stiffness, 1)),
         **{name: uniform(values) for name, values in strengths.items()},
     )
 
@@ -278,14 +276,10 @@ def law_at(table, j, n):
     )  # fmt: skip
 
 
-def traction_for(parts: LawFlags) -> Callable:
-    """Return the formula `traction` for a law with these parts: shear and paths that it lacks are
-    not compiled."""
-    return _traction(parts.shear, parts.path)
-
-
 @cache
-def _traction(shear: bool, path: bool) -> Callable:
+def traction_for(shear: bool, path: bool) -> Callable:
+    """Return the formula `traction` of joints that may have shear, and a path: what they cannot
+    have is not compiled."""
     trial = trial_for(shear, path)
 
     @formula
@@ -323,4 +317,4 @@ def _traction(shear: bool, path: bool) -> Callable:
     return traction
 
 
-traction = _traction(shear=True, path=True)
+traction = traction_for(shear=True, path=True)

@@ -145,6 +145,3 @@ def trial_for(shear: bool, path: bool) -> Callable:
         return Trial(gap, opening, x, z, still, t_n, tau, way)
 
     return trial
-
-
-trial = trial_for(shear=True, path=True)

@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 from jointwave.joints.dilation import lift, lift_rate
 from jointwave.joints.formula import formula
-from jointwave.joints.law import LawFlags
 from jointwave.joints.normal import normal_tangent
 from jointwave.joints.rate_state import resistance_to_sliding
 from jointwave.joints.shear import UNLIMITED, resistance, shear_traction, size_of
@@ -41,14 +40,10 @@ class Tangent(NamedTuple):
     nz: float = 0.0
 
 
-def tangent_for(parts: LawFlags) -> Callable:
-    """Return the formula `tangent` for a law with these parts: shear and paths that it lacks are
-    not compiled."""
-    return _tangent(parts.shear, parts.path)
-
-
 @cache
-def _tangent(shear: bool, path: bool) -> Callable:
+def tangent_for(shear: bool, path: bool) -> Callable:
+    """Return the formula `tangent` of joints that may have shear, and a path: what they cannot
+    have is not compiled."""
     trial = trial_for(shear, path)
 
     @formula
@@ -117,7 +112,7 @@ def _tangent(shear: bool, path: bool) -> Callable:
     return tangent
 
 
-tangent = _tangent(shear=True, path=True)
+tangent = tangent_for(shear=True, path=True)
 
 
 @formula

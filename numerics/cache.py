@@ -1,11 +1,14 @@
 """The cache of compiled kernels: one folder for each version of the sources in use."""
 
+import fcntl
 import hashlib
 import os
 import re
 import shutil
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from threading import Timer
 from time import time
 
 import numba
@@ -42,6 +45,21 @@ def make(directory: Path) -> None:
     if not directory.exists():
         directory.mkdir(parents=True, exist_ok=True)
         forget_unused(directory.parent)
+
+
+@contextmanager
+def one_process(lock: Path, wait: float, announce: Callable[[], None]) -> Iterator[None]:
+    """Hold the lock of a cache, for which other processes wait; announce what takes longer than
+    `wait`, s."""
+    timer = Timer(wait, announce)
+    with ExitStack() as held:
+        with suppress(OSError):  # a cache that cannot be written
+            lock.parent.mkdir(parents=True, exist_ok=True)
+            fcntl.flock(held.enter_context(lock.open("w")), fcntl.LOCK_EX)
+        held.callback(timer.cancel)
+        timer.daemon = True
+        timer.start()
+        yield
 
 
 def forget_unused(base: Path) -> None:

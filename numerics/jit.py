@@ -1,19 +1,17 @@
 """Compilation of kernels: one set of options, one cache keyed by the sources."""
 
-import fcntl
 import logging
 from collections.abc import Callable
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from functools import cache, wraps
 from hashlib import sha256
 from pathlib import Path
-from threading import Timer
 from typing import Any
 
 import numba
 import numpy as np
 
-from jointwave.numerics.cache import cache_directory, make, mark_used
+from jointwave.numerics.cache import cache_directory, make, mark_used, one_process
 
 WAIT = 1.5  # s, after which compiling is announced: cached kernels load in less, also under load
 
@@ -67,16 +65,11 @@ def compile_for(kernel: Any, types: tuple) -> None:
     index of a function, adds to it and writes it back: two processes at once would give two
     specialisations the same file.
     """
-    timer, function = Timer(WAIT, announce), kernel.py_func
+    function = kernel.py_func
     name = f"{function.__module__}.{function.__qualname__}.lock"
-    with ExitStack() as held:
-        with suppress(OSError):  # a cache that cannot be written
-            make(DIRECTORY)
-            file = held.enter_context((DIRECTORY / name).open("w"))
-            fcntl.flock(file, fcntl.LOCK_EX)
-        held.callback(timer.cancel)
-        timer.daemon = True
-        timer.start()
+    with suppress(OSError):  # a cache that cannot be written
+        make(DIRECTORY)
+    with one_process(DIRECTORY / name, WAIT, announce):
         kernel.compile(types)
 
 

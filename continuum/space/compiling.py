@@ -1,18 +1,17 @@
 """Forms, and in old versions elements, that dolfinx compiles by a C compiler."""
 
-import fcntl
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from threading import Timer
 from time import time
 from typing import TypeVar
 
 import cffi
 
 from jointwave.continuum.space.fenicsx import dolfinx
+from jointwave.numerics.cache import one_process
 
 Made = TypeVar("Made")
 LINE = "dolfinx compiles the elements and forms of the rock; later runs load them"
@@ -26,7 +25,7 @@ def compiled(make: Callable[[], Made]) -> Made:
 
     Raises ImportError, with the way to install it, where the compiler is not there or fails.
     """
-    with _quiet(), _one_process():
+    with _quiet(), one_process(_cache() / "jointwave.lock", WAIT, announce):
         try:
             return make()
         except TimeoutError:  # a run that was killed left its source
@@ -48,20 +47,6 @@ def _quiet() -> Iterator[None]:
         root.handlers[:] = handlers
         root.setLevel(level)
         logging.disable(disabled)
-
-
-@contextmanager
-def _one_process() -> Iterator[None]:
-    timer = Timer(WAIT, announce)
-    with ExitStack() as held:
-        with suppress(OSError):  # a cache that cannot be written
-            _cache().mkdir(parents=True, exist_ok=True)
-            file = held.enter_context((_cache() / "jointwave.lock").open("w"))
-            fcntl.flock(file, fcntl.LOCK_EX)
-        held.callback(timer.cancel)
-        timer.daemon = True
-        timer.start()
-        yield
 
 
 @cache

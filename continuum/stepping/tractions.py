@@ -90,7 +90,7 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the formula of the forces of joints of a law with these parts in d dimensions;
     stressed : whether they carry anything at u = 0."""
     dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
-    strained, traction = strained_for(parts, dim), traction_for(parts)
+    strained, traction = strained_for(parts, dim), traction_for(parts.shear, parts.path)
 
     @formula
     def tractions(points, dt, jump, moved, rate, before, after, force, drag):
@@ -172,7 +172,7 @@ def forces_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
 def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     """Return the kernel of the tangents of joints of a law with these parts."""
     dashpots, remembers = parts.dashpots, has_history(parts)
-    strained, tangent = strained_for(parts, dim), tangent_for(parts)
+    strained, tangent = strained_for(parts, dim), tangent_for(parts.shear, parts.path)
 
     def tangents(points, dt, r, jump, rate, before, stiffness):
         """Set how each point resists displacement [points, d, d], N/m: minus the derivatives of

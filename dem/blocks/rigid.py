@@ -14,7 +14,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.dem.contacts.chunks import Chunks, chunks_of
 from jointwave.dem.contacts.faces import Contacts, extents
 from jointwave.dem.contacts.law import Columns, points_on
-from jointwave.dem.contacts.stability import critical_step_of_row, critical_time_step
+from jointwave.dem.contacts.stability import critical_time_step
 from jointwave.dem.kernel.composition import stability_limit
 from jointwave.dem.kernel.model import Blocks, KernelFlags
 from jointwave.dem.sides.boundaries import freedoms
@@ -108,7 +108,7 @@ class RigidBlocks(ABC):
         if not self.in_row:
             return critical_time_step(*own)
         limit = stability_limit() / 2 if self.composed else 1.0
-        return limit * critical_step_of_row(*own, self.around.springs)
+        return limit * critical_time_step(*own, self.around.springs)
 
     @property
     def has_points(self) -> bool:

@@ -128,14 +128,10 @@ def springs_of(
     found[:, 0, 0] = normal * area
     for a in range(1, dim):
         found[:, a, a] = shear * area
-    if rotations:
-        bent = (normal * area)[:, None, None] * spread
-        found[:, -1, -1] = bent[:, 0, 0]
-    if rotations == 3:
+    bent = (normal * area)[:, None, None] * spread
+    if rotations == 1:
+        found[:, 2, 2] = bent[:, 0, 0]
+    elif rotations:
         found[:, 3, 3] = shear * area * np.trace(spread, axis1=1, axis2=2)
-        found[:, 4, 4], found[:, 4, 5], found[:, 5, 4] = (
-            bent[:, 1, 1],
-            -bent[:, 0, 1],
-            -bent[:, 0, 1],
-        )
+        found[:, 4:, 4:] = bent[:, ::-1, ::-1] * [[1, -1], [-1, 1]]
     return found

@@ -13,7 +13,7 @@ from jointwave.cases.material.properties import strength_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.dem.contacts.faces import Contacts
-from jointwave.joints.law import Law, law, stiffest, uniform
+from jointwave.joints.law import Law, law, stiffest
 
 #: Rule of points, and their number along each tangent.
 Rule = tuple[str, int | None]
@@ -62,12 +62,7 @@ def columns_of(
     (normal, shear), tension = stiffness, np.array([one.tension is not False for one in laws])
     strengths, tension = strength_of(laws, which).strengths(shears), tension[which]
     across = shear if shears else None
-    found = law(normal, None, tension, shear_stiffness=across, rock_compliance=rock, **strengths)
-    if eta is not None:
-        found = found._replace(
-            normal_viscosity=uniform(eta[0] * normal),
-            shear_viscosity=uniform(eta[1] * shear) if shears else None,
-        )
+    found = law(normal, eta, tension, shear_stiffness=across, rock_compliance=rock, **strengths)
     most = [np.resize(0.0 if one is None else one, len(normal)) for one in stiffest(found, scene)]
     fails = not tension.all() or bool(strengths)
     return Columns(found, normal, shear * shears, np.array(most), eta, rules, fails)

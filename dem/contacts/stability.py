@@ -35,21 +35,45 @@ CLOSE_ENOUGH = 1e-14  # relative, to the largest eigenvalue
 
 
 def critical_time_step(
-    contacts: Contacts, columns: Columns, masses: np.ndarray, local: float
+    contacts: Contacts,
+    columns: Columns,
+    masses: np.ndarray,
+    local: float,
+    springs: Sequence[EndSpring] | None = None,
 ) -> float:
-    """Return a lower bound of the critical step, s; masses : matrices of the blocks [N, F, F].
-    local : Cundall's damping."""
-    eta = columns.time_constants
-    own, damping = _stiffness(contacts, columns, columns.stiffest, masses)[0], None
+    """Return a lower bound of the critical step, s; of blocks one after the other the step itself,
+    to the last digits.
+
+    masses : matrices of the blocks [N, F, F]. local : Cundall's damping. springs : of the ends of a
+    row; None where blocks lie otherwise.
+    """
+    eta, damping, back = columns.time_constants, np.zeros(1), np.zeros(0)
+    if springs is not None:
+        contacts, masses = begin_of(contacts, columns, masses)
+        back = np.linalg.inv(np.linalg.cholesky(masses))
+
+    def matrices(values: Iterable[np.ndarray], held: float) -> np.ndarray:
+        found = _stiffness(contacts, columns, values, masses)
+        if springs is None:
+            return found[0]
+        for one in springs:
+            found[0, min(one.block, len(masses) - 1)] += held * one.critical
+        found[0] = back @ found[0] @ back.swapaxes(1, 2)
+        found[1, :-1] = back[1:] @ found[1, :-1] @ back[:-1].swapaxes(1, 2)
+        return lower_band(found)
+
+    own = matrices(columns.stiffest, 1.0)
     if eta is not None:
-        viscosity = eta[0] * columns.normal, eta[1] * columns.shear
-        damping = _stiffness(contacts, columns, viscosity, masses)[0]
+        damping = matrices((eta[0] * columns.normal, eta[1] * columns.shear), 0.0)
 
     def largest(a: float, b: float) -> float:
-        both = a * own if damping is None else a * own + b * damping
-        return (1 + local) * float(_highest(both, masses).max())
+        both = a * own + b * damping
+        highest = (
+            float(_highest(both, masses).max()) if springs is None else largest_eigenvalue(both)
+        )
+        return (1 + local) * highest
 
-    return critical_step(largest, damping is not None)
+    return critical_step(largest, eta is not None)
 
 
 def squared_frequencies(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
@@ -80,36 +104,6 @@ def _stiffness(
     np.add.at(found[0], j[inner], (of_j.swapaxes(1, 2) @ springs @ of_j)[inner])
     found[1, i[inner]] = -(of_j.swapaxes(1, 2) @ springs @ of_i)[inner]
     return found
-
-
-def critical_step_of_row(
-    contacts: Contacts,
-    columns: Columns,
-    masses: np.ndarray,
-    local: float,
-    springs: Sequence[EndSpring],
-) -> float:
-    """Return the critical step (s) of blocks one after the other, as `critical_time_step` has it,
-    to the last digits; springs : of their ends."""
-    contacts, masses = begin_of(contacts, columns, masses)
-    eta, local, last = columns.time_constants, 1 + local, len(masses) - 1
-    back = np.linalg.inv(np.linalg.cholesky(masses))
-
-    def band(normal: np.ndarray, shear: np.ndarray, held: float) -> np.ndarray:
-        found = _stiffness(contacts, columns, (normal, shear), masses)
-        for one in springs:
-            found[0, min(one.block, last)] += held * one.critical
-        found[0] = back @ found[0] @ back.swapaxes(1, 2)
-        found[1, :-1] = back[1:] @ found[1, :-1] @ back[:-1].swapaxes(1, 2)
-        return lower_band(found)
-
-    (normal, shear), damping = columns.stiffest, np.zeros(1)
-    own = band(normal, shear, 1.0)
-    if eta is not None:
-        damping = band(eta[0] * columns.normal, eta[1] * columns.shear, 0.0)
-    return critical_step(
-        lambda a, b: local * largest_eigenvalue(a * own + b * damping), eta is not None
-    )
 
 
 def begin_of(

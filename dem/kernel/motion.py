@@ -197,12 +197,8 @@ def motion_for(form: KernelFlags) -> Callable:
     def account_motion(blocks, first, turn, u, v, before, inertia, force, kick, sampled, ledger):
         """Enter the kinetic energy of blocks from `first` on, and what damping took of it."""
         for begin in range(0, u.size, AT_ONCE):
-            block, own, m, push = (
-                first + begin // freedoms,
-                u[begin:],
-                inertia[begin:],
-                force[begin:],
-            )
+            block, own = first + begin // freedoms, u[begin:]
+            m, push = inertia[begin:], force[begin:]
             now, then, turned = v[begin:], before[begin:], turn
             if finite:
                 turned = turn[begin // freedoms :]

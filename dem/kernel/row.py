@@ -19,7 +19,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
     record : the formula that samples a chunk's.
     """
     parts, has_ledger, stressed, drags = form.parts, form.ledger, form.stressed, form.drags
-    fails, traction, shaken = form.points, traction_for(form.parts), form.shaken
+    fails, traction, shaken = form.points, traction_for(parts.shear, parts.path), form.shaken
     dashpots, softening, varied, used = (
         parts.dashpots, parts.softening, parts.varied, rows_of(form.parts)
     )  # fmt: skip

@@ -22,7 +22,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     parts, dim, turns, stressed = form.parts, form.dim, form.turns, form.stressed
     dashpots, varied, has_ledger, finite = parts.dashpots, parts.varied, form.ledger, form.finite
     softening, residual, path_dependent = parts.softening, parts.residual, parts.path
-    traction = traction_for(parts)
+    traction = traction_for(parts.shear, parts.path)
     rated, drags, past, rows = form.rated, form.drags, form.point, form.buffer
     LAW, JUMP, RATE, NOW, FORCE, DRAG = (
         rows.law, rows.jump, rows.rate, rows.now, rows.force, rows.drag
