@@ -67,16 +67,19 @@ def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
 
 
 def step_means(
-    load: LoadHistory, dt: float, count: int, first: int = 0, stride: int = 1
+    load: LoadHistory, dt: float, steps: np.ndarray, late: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] for `count` steps n from the first
-    on, one in `stride`, Pa.
+    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] in equally spaced steps n [k], Pa
+    [..., k]; late : by how much the load begins later [..., 1], s.
 
     This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters
-    between two half steps is the true one.
+    between two half steps is the true one. Means over consecutive steps add up to the impulse to
+    the last digit.
     """
-    steps = first + stride * np.arange(count)
-    before, after = (load.impulse(dt * (steps + half)) for half in (-0.5, 0.5))
+    if len(steps) and steps[-1] - steps[0] == len(steps) - 1:
+        edges = dt * (np.append(steps, steps[-1] + 1) - 0.5)
+        return np.diff(load.impulse(edges - late), axis=-1) / dt
+    before, after = (load.impulse(dt * (steps + half) - late) for half in (-0.5, 0.5))
     return (after - before) / dt
 
 

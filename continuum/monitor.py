@@ -16,7 +16,6 @@ from jointwave.numerics.small_motion import (
     LARGEST,
     Moved,
     farthest,
-    matters,
     may_overlap,
     overlapping,
     refuse_large_motion,
@@ -51,9 +50,8 @@ class Monitor:
         places = body.x[:, body.x.shape[1] // 2] if self.scene.is_column else body.x
         energy = steps.samples.energy if exact else None
         check(self.guard, self.run, (first, last), energy, speed, places)
-        if matters(self.scene):
-            t = last * self.time.stride * self.time.dt
-            refuse_large_motion(self.scene, self.run.engine, self._moved(), t, first)
+        t = last * self.time.stride * self.time.dt
+        refuse_large_motion(self.scene, self.run.engine, self._moved, t, first)
 
     def _moved(self) -> Moved | None:
         """Return the joint that has moved furthest over the size of its smaller block, or blocks
@@ -128,10 +126,7 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
         pairs = of_all(found.blocks, found.across, "blocks")[joints.column]
         size = found.blocks.volume[pairs].min(axis=1) ** (1 / body.components)
         places = joints.place
-    by = np.linalg.norm(jump, axis=1)
-    k = farthest(by, size)
-    i, j = pairs[k].tolist()
-    return Moved(i, j, float(by[k]), float(size[k]), tuple(places[k].tolist()))
+    return farthest(pairs, np.linalg.norm(jump, axis=1), size, places)
 
 
 def motion_of_blocks(found: SceneBody, u: np.ndarray) -> np.ndarray:

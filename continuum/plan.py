@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
 from math import ceil
 from typing import Any, NamedTuple
 
@@ -11,17 +10,13 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
-from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
 from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.warnings.sources import of_resolution
-from jointwave.continuum.mesh.size import resolved_period
+from jointwave.continuum.mesh.size import of_coarse_cells, resolved_period
 from jointwave.continuum.problem import problem_of
-from jointwave.continuum.receivers.sections import axis_of
 from jointwave.continuum.scene import SceneBody, body_of
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.rock import Rock
@@ -35,7 +30,6 @@ STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to
 PRODUCT_RATE, FACTOR_RATE = 1e9, 3e8
 #: Operations a second of a factorisation, and what an implicit step costs besides, s.
 FACTORISATION_RATE, OVERHEAD = 1e9, 1e-3
-FLUID = 1e-9  # of the largest modulus: below it rock has no shear waves
 ITERATIONS = 3  # of Newton's method where joints open, slide or break
 
 
@@ -70,7 +64,8 @@ def plan_of(
     """Return the run of a scene; arguments and errors as of `continuum.run.simulate`."""
     refuse(scene, model, dim)
     found = body_of(scene, model, rock, dim)
-    for line in of_coarse_cells(found):
+    cells = compat.cell_corners(found.body.mesh), *map(found.of_cells, ("stiffness", "density"))
+    for line in of_coarse_cells(scene, found.scripted, *cells):
         log.warning(line)
     refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
@@ -93,31 +88,6 @@ def plan_of(
     }
     refuse_beyond_memory(scene, parts)
     return Plan(found, problem._replace(comm=comm), choice, critical)
-
-
-def of_coarse_cells(found: SceneBody) -> Iterator[str]:
-    """Say where cells of a file, or beside the rock of a script, are too large for the shortest
-    wave: S at the highest frequency, of axial motion along a pillar the axial one."""
-    scene, body, frequency = found.scene, found.body, highest_frequency(found.scene)
-    if frequency is None or not (found.scripted or scene.mesh_path is not None):
-        return
-    size, moduli = np.ptp(compat.cell_corners(body.mesh), axis=1), found.of_cells("stiffness")
-    if scene.is_column:
-        size = size[:, [axis_of(body)]]
-    if scene.is_column and not is_spatial(scene):
-        least = moduli[:, axis_of(body), axis_of(body)]
-    else:  # of isotropic rock the shear modulus, of a fluid that of pressure
-        values = np.linalg.eigvalsh(moduli)
-        least = np.where(values > FLUID * values.max(), values, np.inf).min(axis=1)
-    wave = np.sqrt(least / found.of_cells("density")) / frequency
-    nodes = scene.numerics.continuum.order * wave / size.max(axis=1)
-    worst = int(nodes.argmin())
-    place = ", ".join(f"{x:.4g}" for x in compat.cell_corners(body.mesh)[worst].mean(axis=0))
-    gives = f"{'rock of a script' if found.scripted else 'the mesh'}: elements at [{place}] have"
-    where = f"nodes per wavelength at {frequency:.4g} Hz, below which 95 % of the energy lies"
-    longest = float(size.max(axis=1)[worst] * nodes[worst] / LEAST_BLOCKS)
-    remedy = "" if scene.is_column else f": numerics.continuum.size = {longest:.2g} m"
-    yield from of_resolution(gives, float(nodes[worst]), where, remedy)
 
 
 def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:

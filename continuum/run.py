@@ -11,7 +11,6 @@ import numba
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import StoppedError
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.monitor import Monitor
@@ -96,12 +95,7 @@ def simulate(
     work = steps.work_of_a_step * problem.body.mass.size * time.stride
     chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_CHUNKS)
     parts = steps.parts, steps.samples, monitor.guard
-    try:
-        run_in_chunks(time.samples, chunk, march, parts, progress, recorder, keeper)
-    except StoppedError as error:
-        error.result = result(error.samples)
-        raise
-    return result(time.samples)
+    return run_in_chunks(time.samples, chunk, march, result, parts, progress, recorder, keeper)
 
 
 def about_run(

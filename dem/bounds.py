@@ -81,9 +81,7 @@ def moved_apart(system: BlockSystem, state: State) -> Moved | None:
         ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
         by = np.hypot(np.abs(moved[:, 0]) + ends, by)
         size = np.append(blocks.size, np.full(len(met.walls), np.inf))[met.blocks].min(axis=1)
-    k = farthest(by, size)
-    i, j = met.blocks[k].tolist()
-    return Moved(i, j if j < count else -1, float(by[k]), float(size[k]), tuple(place[k].tolist()))
+    return farthest(met.blocks, by, size, place, count)
 
 
 def refuse_large_rotation(system: BlockSystem, state: State, t: float) -> None:

@@ -22,7 +22,7 @@ from jointwave.dem.kernel.parts import thread_count
 from jointwave.dem.sides.boundaries import dashpots
 from jointwave.dem.sides.loads import Loads
 from jointwave.dem.sides.shaking import Shaking, shaking
-from jointwave.dem.sides.surroundings import DashpotsOfBase
+from jointwave.dem.sides.surroundings import before_base
 from jointwave.dem.system import BlockSystem
 from jointwave.joints.law import table_of
 
@@ -59,7 +59,7 @@ def prepared(scene: AnyScene, incident: IncidentField | None = None) -> BlockSys
         walls=len(blocks.contacts.walls),
     )
     threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
-    return BlockSystem(blocks, time, model, receivers, loads, resistance, bearing, moving, threads)
+    return BlockSystem(blocks, time, model, loads, resistance, bearing, moving, threads)
 
 
 def blocks_of(scene: AnyScene) -> Any:
@@ -102,7 +102,7 @@ def loads_of(
     waves = [] if around.waves is None else around.waves(incident, rows, time)
     if moving is not None and around.impedance[around.moves].any():
         k = int(row[around.moves][0])
-        waves.append(DashpotsOfBase(k, resistance[k][:, : blocks.dim], moving))
+        waves.append(before_base(k, resistance[k][:, : blocks.dim], moving))
     return (
         Loads(rows, around.patterns, waves, time, blocks.onto, blocks.composed),
         resistance,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,7 +12,7 @@ import numba
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError, StoppedError
+from jointwave.cases.errors import SceneError
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.damping import NOT_OF_BLOCKS
@@ -24,7 +25,7 @@ from jointwave.dem.readings.snapshots import recorder
 from jointwave.dem.relaxation import start
 from jointwave.dem.system import BlockSystem
 from jointwave.numerics.divergence import Guard, Guarded, check, guard
-from jointwave.numerics.small_motion import matters, refuse_large_motion
+from jointwave.numerics.small_motion import refuse_large_motion
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 from jointwave.results.arrays import size_of
 
@@ -68,7 +69,7 @@ def simulate(
     compiled = perf_counter()
 
     def result(count: int) -> xr.Dataset:
-        found = system.receivers.dataset(
+        found = system.blocks.receivers.dataset(
             system,
             state,
             first_of(samples, count),
@@ -95,17 +96,12 @@ def simulate(
         look(system, state, samples, monitor, first, last)
         t = last * time.stride * time.dt
         refuse_large_rotation(system, state, t)
-        if matters(scene):
-            refuse_large_motion(scene, "the rigid blocks", moved_apart(system, state), t, first)
+        moved = partial(moved_apart, system, state)
+        refuse_large_motion(scene, "the rigid blocks", moved, t, first)
 
     steps = min(BLOCK_STEPS_AT_ONCE // system.blocks.count, time.steps // LOOKS)
     chunk, parts = max(LEAST_STEPS, steps) // time.stride, (state, samples, monitor)
-    try:
-        run_in_chunks(time.samples, chunk, march, parts, progress, snapshots, keeper)
-    except StoppedError as error:  # with the part that is valid
-        error.result = result(error.samples)
-        raise
-    return result(time.samples)
+    return run_in_chunks(time.samples, chunk, march, result, parts, progress, snapshots, keeper)
 
 
 class Plan(NamedTuple):

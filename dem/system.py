@@ -15,7 +15,7 @@ from jointwave.results.arrays import copied
 class BlockSystem(NamedTuple):
     """Blocks ready to run.
 
-    receivers : what is recorded. loads : what acts on held blocks. resistance : of the dashpots on
+    loads : what acts on held blocks. resistance : of the dashpots on
     sides and ends, as `boundaries.dashpots` has it [h, d + d^2, d + d^2]. bearing : the same of
     unit dashpots where these bear the weight. shaking : the motion of walls; None where none moves.
     threads : that share each step.
@@ -24,7 +24,6 @@ class BlockSystem(NamedTuple):
     blocks: Any
     time: Clock
     model: Model
-    receivers: Any
     loads: Loads
     resistance: np.ndarray
     bearing: np.ndarray

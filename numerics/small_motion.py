@@ -6,6 +6,8 @@ that met nothing at the start pass through one another.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -31,29 +33,30 @@ class Moved(NamedTuple):
     overlaps: bool = False
 
 
-def matters(scene: Scene | RockMass) -> bool:
-    """Return whether blocks that move too far stop a run of a scene.
-
-    Faces that only translate stand for faces of large extent, and finite rotations follow faces
-    that leave one another.
-    """
-    if scene.numerics.allow_large_motion:
-        return False
-    return scene.rotation == "small"
-
-
-def farthest(by: np.ndarray, size: np.ndarray) -> int:
-    """Return the joint that has moved furthest, of distances [c] and sizes [c] (m)."""
-    return int(np.nan_to_num(by / size, nan=0.0).argmax())
+def farthest(
+    pairs: np.ndarray, by: np.ndarray, size: np.ndarray, places: np.ndarray, blocks: float = inf
+) -> Moved:
+    """Return the joint that has moved furthest, of pairs of blocks [c, 2], walls from `blocks` on,
+    distances [c], sizes [c] and places [c, d], m."""
+    k = int(np.nan_to_num(by / size, nan=0.0).argmax())
+    (i, j), place = pairs[k].tolist(), tuple(places[k].tolist())
+    return Moved(i, j if j < blocks else -1, float(by[k]), float(size[k]), place)
 
 
 def refuse_large_motion(
-    scene: Scene | RockMass, who: str, found: Moved | None, t: float, samples: int
+    scene: Scene | RockMass, who: str, find: Callable[[], Moved | None], t: float, samples: int
 ) -> None:
     """Raise StoppedError where a block has moved further than small motion allows.
 
-    who : in words. t : of the look, s. samples : how many had been taken at the look before.
+    Faces that only translate stand for faces of large extent, and finite rotations follow faces
+    that leave one another: there, as where the scene allows it, nothing is looked for.
+
+    who : in words. find : returns the motion. t : of the look, s. samples : how many had been taken
+    at the look before.
     """
+    if scene.numerics.allow_large_motion or scene.rotation != "small":
+        return
+    found = find()
     if found is None or not (found.overlaps or found.by > LARGEST * found.size):
         return
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where

@@ -10,20 +10,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import Any, Protocol
 
-from jointwave.cases.errors import InterruptedRun
-
-
-class SnapshotRecorder(Protocol):
-    """Snapshots of every `every`-th sample; those of an earlier part of the run may be present.
-
-    frames : the recorded arrays of each.
-    """
-
-    every: int
-    frames: list[Any]
-
-    def allocate(self, samples: int) -> None:
-        """Count the snapshots of so many samples as taken."""
+from jointwave.cases.errors import StoppedError
 
 
 class Checkpointer(Protocol):
@@ -38,42 +25,44 @@ class Checkpointer(Protocol):
         """Copy the state after `done` samples into `parts`."""
 
     def look(self, samples: int, parts: Any) -> None:
-        """Save the parts after so many samples, or raise InterruptedRun."""
+        """Save the parts after so many samples, or raise InterruptedRun with their number."""
 
 
 def run_in_chunks(
     samples: int,
     chunk: int,
     march: Callable[[int, int], None],
+    result: Callable[[int], Any],
     parts: Any,
     progress: Callable[[float], None] | None = None,
-    recorder: SnapshotRecorder | None = None,
+    recorder: Any = None,
     keeper: Checkpointer | None = None,
-    snapshot_at: int = 0,
-) -> None:
-    """Take all samples of a run in intervals of `chunk`; `march(first, last)` takes samples
-    first .. last - 1, and raises an error if the run exceeds its bounds.
+) -> Any:
+    """Take all samples of a run in intervals of `chunk`, and return its result.
 
-    parts : the state of the run. keeper : may save it after every interval; None without.
-    recorder : snapshots at ends of intervals, of the sample before (`snapshot_at` 1) or after
-    (`snapshot_at` 0); None without.
+    march : takes samples first .. last - 1, and raises a StoppedError if the run exceeds its
+    bounds. result : of so many samples; a run that stops has that of the valid ones in its error.
+    parts : the state of the run. recorder : `results.snapshots.SnapshotRecorder`, whose snapshots
+    are at begins of intervals; None without. keeper : may save all that changes after every
+    interval; None without.
     """
     stops, done = {samples, *range(0, samples, max(1, chunk))}, 0
     if recorder is not None:
-        stops.update(range(snapshot_at, samples, recorder.every))
+        stops.update(range(0, samples, recorder.every))
         parts = (parts, recorder.frames)
     if keeper is not None and keeper.done:
         done = keeper.done
         if recorder is not None:
             recorder.allocate(done)
         keeper.restore(parts)
-    for first, last in pairwise(sorted({done, *(stop for stop in stops if stop > done)})):
-        march(first, last)
-        if keeper is not None:
-            try:
+    try:
+        for first, last in pairwise(sorted({done, *(stop for stop in stops if stop > done)})):
+            march(first, last)
+            if keeper is not None:
                 keeper.look(last, parts)
-            except InterruptedRun as error:
-                error.samples = last
-                raise
-        if progress:
-            progress(last / samples)
+            if progress:
+                progress(last / samples)
+    except StoppedError as error:
+        error.result = result(error.samples)
+        raise
+    return result(samples)

@@ -55,13 +55,28 @@ class Snapshots(NamedTuple):
         return self._replace(**{k: v[first:] for k, v in over_time.items() if v is not None})
 
 
-class SnapshotRecorder:
-    """The return values of `capture(sample)` at every `every`-th sample of a run, in `frames`."""
+#: A snapshot: displacement and velocity of nodes [nodes, d], m and m/s, stress of cells, Pa [cells]
+#: or [cells, components], and slip of joints [joints], m.
+Frame = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
-    def __init__(self, scene: AnyScene, nodes: int, capture: Callable[[int], Any]) -> None:
-        """nodes : of a snapshot; raises SceneError for too many snapshots of them."""
+
+class SnapshotRecorder:
+    """The body at every `every`-th sample of a run, in `frames`."""
+
+    def __init__(
+        self,
+        scene: AnyScene,
+        nodes: int,
+        body: tuple[np.ndarray, str, np.ndarray, np.ndarray],
+        capture: Callable[[int], Frame],
+        joints: np.ndarray | None = None,
+    ) -> None:
+        """nodes : of a snapshot; raises SceneError for too many snapshots of them. body : its
+        points [nodes, d], m, and kind, cells and block as in `Snapshots`. capture : returns a
+        sample. joints : ends of those whose slip is shown [joints, 2, d], m; None without."""
         refuse_beyond_room(scene, nodes)
-        self.every, self.capture = samples_between(scene) or 1, capture
+        self.every, self.scene, self.body = samples_between(scene) or 1, scene, body
+        self.capture, self.joints = capture, joints
         self.frames: list[Any] = []
 
     def record_if_due(self, sample: int) -> None:
@@ -72,6 +87,16 @@ class SnapshotRecorder:
     def allocate(self, samples: int) -> None:
         """Allocate the frames of this many samples, to be filled by the caller."""
         self.frames[:] = [copied(self.capture(0)) for _ in range(0, samples, self.every)]
+
+    def add_to(self, result: xr.Dataset) -> xr.Dataset:
+        """Return the run's result with its snapshots; in a rock mass displacement and slip count
+        from the first of them."""
+        time = result["time"].values[:: self.every]
+        u, v, stress, slip = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
+        if not self.scene.is_column:
+            u, slip = u - u[0], slip - slip[0]
+        found = with_snapshots(result, snapshots(time, *self.body, u, v, stress))
+        return found if self.joints is None else with_slip(found, in_space(self.joints), slip)
 
 
 def samples_between(scene: AnyScene) -> int | None:

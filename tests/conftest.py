@@ -264,7 +264,9 @@ class Checkpointer:
     def look(self, samples, parts):
         if self.kept is None and samples >= self.at:
             self.kept, self.done = copied(parts), samples
-            raise InterruptedRun("enough")
+            error = InterruptedRun("enough")
+            error.samples = samples
+            raise error
 
 
 @pytest.fixture

@@ -1,9 +1,11 @@
 """Forces on a body: gravity, pressures, point forces, compliant bases, excavations, and waves that
 enter through quiet sides."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import ufl
 from scipy.sparse import csr_matrix
 
 from jointwave.cases.histories import LoadHistory
@@ -12,17 +14,25 @@ from jointwave.cases.loads import load_history, step_means, velocity_of
 from jointwave.cases.material.quiet_sides import base_traction
 from jointwave.cases.partition.shape import BESIDE, loaded_lines, shape_of
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import PlaneLoad, shortest_period
+from jointwave.cases.schema.pulse import Load, PlaneLoad, shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.continuum.loads.ends import end_force
+from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.sides import facets_on, impedances_of, inside
-from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
+from jointwave.continuum.receivers.points import read_at
+from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import matrix_of, places_in
+from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.model import Body, Facets, directions, forces_on
 
 IN_A_PERIOD = 100  # samples of a field that is not evaluated at every step
 AT_ONCE = 500_000  # numbers: forces that are in memory at a time for their impulse
+NEAR = 1e-9  # of a pillar: what is at an end
 GAUSS = 6  # points between two nodes: exact for elements of the highest order
+
+
+#: Waves that enter through quiet sides: freedoms there, int array [points d], and a function of
+#: equally spaced times [n], s, that returns the forces on them [n, points d], N.
+Waves = tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]
 
 
 class Push(NamedTuple):
@@ -78,9 +88,7 @@ def _base(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
 def _force(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
     """Return a force of 1 N at a point, on the sides of a joint there alike."""
     assert load.at is not None and load.direction is not None
-    here = places_in(body, np.array([load.at]))
-    share = shares_of_pieces(here.point, pieces_of(body)[here.cell])
-    return motion_at(body, here, share, 1).T @ np.array(load.direction)
+    return read_at(body, np.array([load.at]))[2].T @ np.array(load.direction)
 
 
 def _pressure(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
@@ -114,6 +122,44 @@ def _on_line(body: Body, facets: Facets, start: np.ndarray, end: np.ndarray) -> 
     return matrix_of(body, row, here.cell, weights, 1).toarray()[0]
 
 
+def end_force(scene: Scene, body: Body, load: Load) -> np.ndarray:
+    """Return the force on every freedom of an end stress of 1 Pa, N."""
+    facets, axes = body.sides[load.side], directions(body)
+    force, moment = force_and_moment(load)
+    share = forces_on(body, facets, np.tile(force[axes], (len(facets.node), 1)))
+    if not moment.any() or body.mesh.geometry.dim == 1 or body.tied is not None:
+        return share
+    # Tractions that are linear between nodes are forces by the form of u . v over the end.
+    mesh, domain, y = dolfinx.mesh, body.mesh, float(facets.place[0, 1])
+    near, dim = NEAR * float(np.ptp(body.x[:, 1])), domain.topology.dim - 1
+    own = mesh.locate_entities_boundary(domain, dim, lambda x: np.abs(x[1] - y) <= near)
+    tags = mesh.meshtags(domain, dim, np.sort(own), np.ones(len(own), np.int32))
+    ds = ufl.Measure("ds", domain=domain, subdomain_data=tags, subdomain_id=1)
+    on_end = ufl.inner(ufl.TrialFunction(body.space), ufl.TestFunction(body.space)) * ds
+    bent = spread(scene.pillar.side, moment, body.x)[:, axes]
+    return share + compat.matrix(on_end) @ bent.ravel()
+
+
+def force_and_moment(load: Load) -> tuple[np.ndarray, np.ndarray]:
+    """Return force (over that of 1 Pa) and moment about the axis (m, of 1 Pa over the area) of a
+    unit end stress, along x, y, z."""
+    direction = np.array(load.direction, dtype=float)
+    if load.arm is not None:
+        return np.zeros(3), load.arm * direction
+    return direction, np.cross([load.at[0], 0.0, load.at[1]], direction)
+
+
+def spread(side: float, moment: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return the tractions [n, 3] of a moment at points [n, d], as in a long column: linear in x
+    and z (Navier), and in torsion along circles about the axis."""
+    across = np.zeros((len(x), 2))
+    across[:, : x.shape[1] - 1] = x[:, [0, 2][: x.shape[1] - 1]]
+    bent, twisted = 12 / side**2, 6 / side**2
+    along = bent * (moment[2] * across[:, 0] - moment[0] * across[:, 1])
+    around = twisted * moment[1] * across
+    return np.column_stack([around[:, 1], along, -around[:, 0]])
+
+
 class Loads:
     """All forces that are known before a run.
 
@@ -122,28 +168,27 @@ class Loads:
     freedom : int array [k], on which any acts.
     """
 
-    def __init__(self, size: int, dt: float, pushes: list[Push], waves: "Waves | None") -> None:
+    def __init__(self, size: int, dt: float, pushes: list[Push], waves: Waves | None) -> None:
         shares = np.array([push.share for push in pushes]).reshape(len(pushes), size)
         acts = (shares != 0).any(axis=0)
-        if waves is not None:
-            acts[waves.freedom] = True
-        self.freedom, self.dt, self.waves = np.flatnonzero(acts), dt, waves
+        there = np.zeros(0, np.int64) if waves is None else waves[0]
+        self._pulled = None if waves is None else waves[1]
+        acts[there] = True
+        self.freedom, self.dt = np.flatnonzero(acts), dt
         self.pushes = [push._replace(share=push.share[self.freedom]) for push in pushes]
-        if waves is not None:
-            place = np.searchsorted(self.freedom, waves.freedom)
-            entries = np.arange(len(place)), place
-            shape = len(place), len(self.freedom)
-            self._onto = csr_matrix((np.ones(len(place)), entries), shape)
+        entries = np.arange(len(there)), np.searchsorted(self.freedom, there)
+        shape = len(there), len(self.freedom)
+        self._onto = csr_matrix((np.ones(len(there)), entries), shape)
 
     def at(self, first: int, last: int, stride: int = 1) -> np.ndarray:
         """Return the forces of steps first .. last - 1, one in `stride`, [steps, k], N."""
         steps = np.arange(first, last, stride)
         found = np.zeros((steps.size, self.freedom.size))
         for push in self.pushes:
-            mean = step_means(push.history, self.dt, steps.size, first, stride)
+            mean = step_means(push.history, self.dt, steps)
             found += mean[:, None] * push.share
-        if self.waves is not None and steps.size:
-            found += self.waves.at(self.dt * steps) @ self._onto
+        if self._pulled is not None and steps.size:
+            found += self._pulled(self.dt * steps) @ self._onto
         return found
 
     def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
@@ -157,39 +202,28 @@ class Loads:
         return self.dt * stride * felt
 
 
-class Waves:
-    """Waves that enter through quiet sides.
-
-    Attributes
-    ----------
-    freedom : int array [points * d].
-    """
-
-    def __init__(self, scene: RockMass, body: Body, field: IncidentField) -> None:
-        self.facets = facets_on(body, scene.boundaries.sides("quiet"))
-        self.field, self.places = field, inside(body, self.facets)
-        self.impedance = impedances_of(scene, body, self.facets)
-        self.freedom = (
-            body.components * self.facets.node[:, None] + np.arange(body.components)
-        ).ravel()
-        self.sampled: FaceTractions | None = None
-        if not isinstance(field, FreeField):
-            period = shortest_period(scene.waves) or scene.time.duration
-            apart = min(scene.interval, period / IN_A_PERIOD)
-            times = apart * np.arange(int(np.ceil(scene.time.duration / apart)) + 8)
-            self.sampled = self._tractions(times)
-
-    def _tractions(self, times: np.ndarray) -> FaceTractions:
-        return tractions(self.field, self.places, self.facets.normal, self.impedance, times)
-
-    def at(self, times: np.ndarray) -> np.ndarray:
-        """Return the forces at equally spaced times [n, points * d], N."""
-        found = self._tractions(times).values if self.sampled is None else self.sampled.at(times)
-        return (self.facets.weight[:, None] * found).reshape(len(times), -1)
-
-
 def waves_of(scene: AnyScene, body: Body, incident: IncidentField | None) -> Waves | None:
     """Return the waves of a scene; incident : their field, in intact rock where absent."""
-    if not scene.waves or not scene.boundaries.sides("quiet"):
+    if not scene.waves:
         return None
-    return Waves(scene, body, incident or free_field(scene))
+    facets = facets_on(body, scene.boundaries.sides("quiet"))
+    if not len(facets.node):
+        return None
+    field, places = incident or free_field(scene), inside(body, facets)
+    impedance = impedances_of(scene, body, facets)
+
+    def pulled(times: np.ndarray) -> FaceTractions:
+        return tractions(field, places, facets.normal, impedance, times)
+
+    sampled = None
+    if not isinstance(field, FreeField):
+        period = shortest_period(scene.waves) or scene.time.duration
+        apart = min(scene.interval, period / IN_A_PERIOD)
+        sampled = pulled(apart * np.arange(int(np.ceil(scene.time.duration / apart)) + 8))
+
+    def forces(times: np.ndarray) -> np.ndarray:
+        found = pulled(times).values if sampled is None else sampled.at(times)
+        return (facets.weight[:, None] * found).reshape(len(times), -1)
+
+    freedom = body.components * facets.node[:, None] + np.arange(body.components)
+    return freedom.ravel(), forces

@@ -19,8 +19,8 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
 from jointwave.continuum.space.model import Body, Facets, at_nodes, directions
-from jointwave.continuum.stepping.problem import Dashpots, Held, Springs
-from jointwave.joints.ends import half_spring
+from jointwave.continuum.stepping.problem import Dashpots, Held
+from jointwave.joints.ends import HalfSpring, half_spring
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
 #: Sides by the axis of their normal.
@@ -97,9 +97,10 @@ def _matched(scene: AnyScene, facets: Facets, z: np.ndarray) -> Dashpots:
     weight, along = facets.weight[:, None], np.abs(facets.normal) > 0.5
     k = np.where(along, given[:, :1], given[:, 1:])
 
-    def springs(dt: float) -> Springs:
+    def springs(dt: float) -> HalfSpring:
         own = half_spring(k, eta[:, None], z, dt)
-        return Springs(weight * own.stiffness, own.decay, own.gain, weight * own.critical_stiffness)
+        whole = weight * own.stiffness, weight * own.critical_stiffness
+        return own._replace(stiffness=whole[0], critical_stiffness=whole[1])
 
     c = weight * np.where(k > 0, half_spring(k, eta[:, None], z).viscosity, z)
     return Dashpots(facets.node, c[:, :, None] * np.eye(z.shape[1]), springs if k.any() else None)

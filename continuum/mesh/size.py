@@ -1,10 +1,13 @@
-"""Sizes of elements, and the memory of a body, before any of it is made."""
+"""Sizes of elements: those that waves need, and the memory that a body of them takes."""
 
+from collections.abc import Iterator
 from math import ceil, sqrt
 
 import numpy as np
 
+from jointwave.cases.effects import is_spatial
 from jointwave.cases.geometry.blocks import Blocks
+from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
@@ -12,6 +15,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
+from jointwave.cases.warnings.sources import of_resolution
 
 #: Elements in the way of the slowest wave in one period, by their order.
 IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}
@@ -22,6 +26,7 @@ OF_KINKS, OF_SIMPLICES = 2.0, 1.5
 TRAVEL_OF_KINKS, TRAVEL_OF_DAMPED = 0.01, 0.04
 #: Bytes a freedom, and for each entry of its row of the stiffness: the operators as they are made.
 FREEDOM, ENTRY = 500, 40
+FLUID = 1e-9  # of the largest modulus: below it rock has no shear waves
 
 
 def element_size(scene: RockMass, simplices: bool) -> float:
@@ -76,3 +81,34 @@ def refuse_large_mesh(
 def body_bytes(nodes: float, components: int, order: int, dim: int) -> float:
     """Return the memory that a body takes, bytes."""
     return components * nodes * (FREEDOM + ENTRY * components * (order + 1) ** dim)
+
+
+def of_coarse_cells(
+    scene: AnyScene, scripted: bool, corners: np.ndarray, moduli: np.ndarray, density: np.ndarray
+) -> Iterator[str]:
+    """Say where cells of a file, or beside the rock of a script, are too large for the shortest
+    wave: S at the highest frequency, of axial motion along a pillar the axial one.
+
+    corners : of cells [cells, n, d], m. moduli, density : of their rock, in Voigt's form
+    [cells, n, n], Pa, and [cells], kg/m3.
+    """
+    frequency = highest_frequency(scene)
+    if frequency is None or not (scripted or scene.mesh_path is not None):
+        return
+    size, axis = np.ptp(corners, axis=1), corners.shape[2] // 2
+    if scene.is_column:
+        size = size[:, [axis]]
+    if scene.is_column and not is_spatial(scene):
+        least = moduli[:, axis, axis]
+    else:  # of isotropic rock the shear modulus, of a fluid that of pressure
+        values = np.linalg.eigvalsh(moduli)
+        least = np.where(values > FLUID * values.max(), values, np.inf).min(axis=1)
+    wave = np.sqrt(least / density) / frequency
+    nodes = scene.numerics.continuum.order * wave / size.max(axis=1)
+    worst = int(nodes.argmin())
+    place = ", ".join(f"{x:.4g}" for x in corners[worst].mean(axis=0))
+    gives = f"{'rock of a script' if scripted else 'the mesh'}: elements at [{place}] have"
+    where = f"nodes per wavelength at {frequency:.4g} Hz, below which 95 % of the energy lies"
+    longest = float(size.max(axis=1)[worst] * nodes[worst] / LEAST_BLOCKS)
+    remedy = "" if scene.is_column else f": numerics.continuum.size = {longest:.2g} m"
+    yield from of_resolution(gives, float(nodes[worst]), where, remedy)

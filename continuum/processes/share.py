@@ -10,13 +10,8 @@ from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import JumpOperator
-from jointwave.continuum.stepping.problem import (
-    OF_POINTS,
-    Dashpots,
-    Problem,
-    Readings,
-    Springs,
-)
+from jointwave.continuum.stepping.problem import OF_POINTS, Dashpots, Problem, Readings
+from jointwave.joints.ends import HalfSpring
 
 
 class Share(NamedTuple):
@@ -45,10 +40,6 @@ class SomeForces:
     def at(self, first: int, last: int) -> np.ndarray:
         """Return the forces of steps first .. last - 1 [steps, k], N."""
         return self.forces.at(first, last)[:, self.kept]
-
-    def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
-        """Return that of all forces; mass : of all freedoms, kg."""
-        return self.forces.impulse(mass, steps, stride)
 
 
 def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
@@ -114,9 +105,9 @@ def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Proble
     if quiet is not None:
         there, springs = number[quiet.node] >= 0, quiet.springs
 
-        def some(dt: float) -> Springs:
+        def some(dt: float) -> HalfSpring:
             assert springs is not None
-            return Springs(*(one[there] for one in springs(dt)))
+            return HalfSpring(*(one[there] for one in springs(dt)))
 
         nodes = number[quiet.node[there]]
         quiet = Dashpots(nodes, quiet.viscosity[there], None if springs is None else some)

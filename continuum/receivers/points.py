@@ -40,8 +40,7 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
         np.array(places, dtype=float).reshape(-1, dim)
         for places in (scene.record.points, scene.record.joints)
     )
-    at, pairs = places_in(body, points), stress_components(dim).values()
-    share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
+    (at, share, motion), pairs = read_at(body, points), stress_components(dim).values()
     constant, carried = np.zeros((len(points), len(pairs))), np.zeros((len(joints), dim))
     read, area = csr_matrix((0, 0)), np.zeros(0)
     if body.joints is not None and len(body.joints.weight):
@@ -56,7 +55,7 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
             carried = read @ body.joints.carried(stress)
     recovered, viscous = _recovered(found, points, at, share)
     return Readings(
-        motion=motion_at(body, at, share, len(points)),
+        motion=motion,
         stress=recovered,
         constant=constant.ravel(),
         traction=csr_matrix(
@@ -68,10 +67,13 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
     )
 
 
-def motion_at(body: Body, at: Places, share: np.ndarray, count: int) -> csr_matrix:
-    """Return the motion of so many points [count d, freedoms]; share : of each cell."""
+def read_at(body: Body, x: np.ndarray) -> tuple[Places, np.ndarray, csr_matrix]:
+    """Return points [m, d], m, in their cells, the share of each cell in a point's mean, and the
+    motion there [m d, freedoms]."""
+    at = places_in(body, x)
+    share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
     weights = np.einsum("nk,ac->nakc", share[:, None] * at.basis, np.eye(body.components))
-    return matrix_of(body, at.point, at.cell, weights, count)
+    return at, share, matrix_of(body, at.point, at.cell, weights, len(x))
 
 
 def pieces_of(body: Body) -> np.ndarray:

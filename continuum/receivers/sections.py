@@ -18,7 +18,7 @@ from scipy.sparse import csr_matrix, diags, kron, vstack
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.loads.forces import pull_of
 from jointwave.continuum.mesh.conforming import SIMPLEX
-from jointwave.continuum.receivers.points import motion_at, pieces_of, shares_of_pieces
+from jointwave.continuum.receivers.points import pieces_of, read_at
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import matrix_of, nodes_of_cells, places_in, tabulate
@@ -85,11 +85,10 @@ def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
     the mean of its sides."""
     x = np.zeros((len(places), body.x.shape[1]))
     x[:, axis_of(body)] = places
-    at, dim = places_in(body, x), body.components
-    share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
-    motion = motion_at(body, at, share, len(x))
+    at, share, motion = read_at(body, x)
     if x.shape[1] == 1:
         return motion
+    dim = body.components
     curl = 0.5 * CURL[:, :dim, :dim]
     weights = np.einsum("aic,n,nki->ankc", curl, share, at.gradient).swapaxes(0, 1)
     return csr_matrix(vstack([motion, matrix_of(body, at.point, at.cell, weights, len(x))]))

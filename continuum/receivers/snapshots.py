@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
@@ -19,11 +18,9 @@ from jointwave.continuum.space.evaluation import (
 )
 from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
-from jointwave.results.snapshots import SnapshotRecorder, snapshots, with_snapshots
+from jointwave.results.snapshots import Frame, SnapshotRecorder
 from jointwave.results.stress import stress_components
 from jointwave.results.subcells import KINDS, linear_cells
-
-Frame = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class StressOfCells:
@@ -76,36 +73,25 @@ class RockRecorder(SnapshotRecorder):
         own = np.arange(len(points))
         if kind in SIMPLEX and body.cell.order == 2:  # a full lattice, without nodes of bubbles
             own = np.flatnonzero(np.isclose(2 * points, np.rint(2 * points)).all(axis=1))
-        points = points[own]
-        parts = linear_cells(kind, points)
+        parts = linear_cells(kind, points[own])
+        self.stress = StressOfCells(found, parts, points[own])
         self.node, first, number = np.unique(nodes[:, own], return_index=True, return_inverse=True)
-        self.points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
-        self.cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
-        self.block = np.repeat(body.block, len(parts))
+        points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
+        cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
+        block = np.repeat(body.block, len(parts))
         if scene.is_column:  # cells of a layer are of the blocks beside it
-            height = self.points[self.cells][..., self.points.shape[1] // 2].mean(axis=1)
-            self.block = np.searchsorted(calibrate(scene).contact_y, height) - 1
-        self.stress = StressOfCells(found, parts, points)
-        count, values = len(self.node), len(self.cells) * len(self.stress.constant)
+            height = points[cells][..., points.shape[1] // 2].mean(axis=1)
+            block = np.searchsorted(calibrate(scene).contact_y, height) - 1
+        count, values = len(self.node), len(cells) * len(self.stress.constant)
         size = snapshot_bytes(scene, count, 6 + values / count)
         refuse_beyond_memory(scene, {"record.fields": size})
-        super().__init__(scene, max(count, values // 3), self.frame)
+        shown = points, KINDS[kind], cells, block
+        super().__init__(scene, max(count, values // 3), shown, self.frame)
 
     def frame(self, sample: int) -> Frame:
-        """Return displacement and velocity of the nodes, and stress of the cells."""
+        """Return displacement and velocity of the nodes, stress of the cells, and no slip."""
         (u, v, strained), body = self.steps.last, self.found.body
         node = self.node if body.tied is None else body.tied[self.node]
         moved, moving = (one.reshape(-1, body.components)[node] for one in (u, v))
-        return moved, moving, self.stress.of(strained, v)
-
-    def add_to(self, result: xr.Dataset) -> xr.Dataset:
-        """Return the run's result with its snapshots; in a rock mass displacement counts from the
-        first of them."""
-        time = result["time"].values[:: self.every]
-        u, v, stress = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
-        if self.found.scene.is_column:
-            stress = stress[:, :, 0]
-        else:
-            u = u - u[0]
-        cells = self.points, KINDS[self.found.body.cell.kind], self.cells, self.block
-        return with_snapshots(result, snapshots(time, *cells, u, v, stress))
+        stress = self.stress.of(strained, v)
+        return moved, moving, stress[:, 0] if self.scene.is_column else stress, np.zeros(0)

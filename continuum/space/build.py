@@ -29,8 +29,14 @@ from jointwave.continuum.space.compat import (
     reference,
     vector_space,
 )
-from jointwave.continuum.space.jump_operator import jump_operator
-from jointwave.continuum.space.model import Body, Facets, Forms, JumpOperator, in_motion
+from jointwave.continuum.space.model import (
+    Body,
+    Facets,
+    Forms,
+    JumpOperator,
+    in_motion,
+    jump_operator,
+)
 from jointwave.continuum.space.traces import Trace, reference_cell, trace
 
 log = logging.getLogger("jointwave")

@@ -11,7 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from jointwave.continuum.space.traces import Reference
+from jointwave.cases.geometry.measure import frames_of
+from jointwave.continuum.space.traces import Reference, Trace
+
+ROUND_OFF = 1e-14  # of components of unit vectors
 
 
 class Forms(NamedTuple):
@@ -120,6 +123,28 @@ def in_motion(vectors: np.ndarray, components: int) -> np.ndarray:
     """Return vectors in a mesh [n, d] by the components of the motion; a mesh of one dimension runs
     along y where it has three."""
     return vectors if vectors.shape[1] == components else vectors * [0.0, 1.0, 0.0]
+
+
+def jump_operator(one: Trace, other: Trace, column: np.ndarray, components: int) -> JumpOperator:
+    """Return the jump operator of facets of block i and those of block j at the same places.
+
+    column : of the law, int array [facets]. components : of displacements. In the plane the tangent
+    is the normal rotated to the left, in space they are the strike and the line of dip. At the end
+    of a joint in rock both sides have one node, and no jump.
+    """
+    count, points = one.node.size, one.node.shape[1]
+    node = np.stack([one.node.ravel(), other.node.ravel()], axis=1)
+    open_ = np.flatnonzero(node[:, 0] != node[:, 1])
+    normal = np.repeat(one.normal[:, :1], points, axis=1).reshape(-1, one.normal.shape[2])
+    frame = frames_of(in_motion(normal[open_], components))
+    frame[np.abs(frame) < ROUND_OFF] = 0.0
+    return JumpOperator(
+        node=node[open_],
+        weight=one.weight.ravel()[open_],
+        column=np.repeat(column, points)[open_],
+        frame=frame,
+        place=one.place.reshape(count, -1)[open_],
+    )
 
 
 def at_nodes(node: np.ndarray, tensors: np.ndarray, size: int) -> csr_matrix:

@@ -188,7 +188,8 @@ class Leapfrog:
         quiet, dim = self.problem.dashpots, self.problem.body.components
         own, springs = quiet.freedom, 3 * (np.zeros((0, dim)),)
         if quiet.springs is not None:
-            springs = quiet.springs(self.dt)[:3]
+            half = quiet.springs(self.dt)
+            springs = half.stiffness, half.decay, half.gain
         moves = ~np.isin(own, self.problem.fixed)
         viscosity = quiet.viscosity * (moves[:, :, None] & moves[:, None, :])
         freedom = self.product.place[own]

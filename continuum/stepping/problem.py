@@ -13,28 +13,18 @@ from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.critical import critical_step
 from jointwave.continuum.stepping.tractions import Points
+from jointwave.joints.ends import HalfSpring
 from jointwave.joints.law import Law, LawFlags, parts_of
 from jointwave.joints.law import table_of as law_table
 
 
-class Springs(NamedTuple):
-    """Springs in front of the dashpots of nodes [k, d], `joints.ends`: stiffness, N/m; decay and
-    gain (s), by which their closure advances in a step; critical : what of the stiffness counts at
-    the critical step, N/m."""
-
-    stiffness: np.ndarray
-    decay: np.ndarray
-    gain: np.ndarray
-    critical: np.ndarray
-
-
 class Dashpots(NamedTuple):
     """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m; springs :
-    those in front of them, of the time step; None without."""
+    those in front of them [k, d], of the time step; None without."""
 
     node: np.ndarray
     viscosity: np.ndarray
-    springs: Callable[[float], Springs] | None = None
+    springs: Callable[[float], HalfSpring] | None = None
 
     @property
     def freedom(self) -> np.ndarray:
@@ -137,7 +127,7 @@ class Problem(NamedTuple):
             found = csr_matrix(found + self.of_joints(*self.stiffest))
         if self.quiet is not None and self.quiet.springs is not None:
             of_sides = np.zeros(found.shape[0])
-            of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical
+            of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical_stiffness
             found = csr_matrix(found + diags(of_sides))
         return found
 

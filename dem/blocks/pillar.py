@@ -55,7 +55,6 @@ class BlocksOfPillar(RigidBlocks):
             cells=np.arange(8 * self.count).reshape(-1, 8),
             block=block,
             joints=None,
-            from_start=False,
         )
 
 

@@ -67,7 +67,6 @@ class BlocksOfRockMass(RigidBlocks):
             cells=cells,
             block=of[piece],
             joints=joints,
-            from_start=True,
         )
 
 
@@ -166,14 +165,12 @@ def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) ->
     if any(one.maximum_closure is not None for one in sets):  # at most all but a billionth of it
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
         rock[which == len(sets)] = 0.0
-    eta, laws = _time_constants(scene, normal, stiffness[1], which), [*sets, JointLaw()]
+    eta, laws = _time_constants(scene, stiffness, which), [*sets, JointLaw()]
     rules = _rules(scene, which)
     return columns_of(scene, laws, which, stiffness, eta=eta, rock=rock, rules=rules)
 
 
-def _time_constants(
-    scene: RockMass, normal: np.ndarray, shear: np.ndarray, which: np.ndarray
-) -> np.ndarray | None:
+def _time_constants(scene: RockMass, stiffness: np.ndarray, which: np.ndarray) -> np.ndarray | None:
     """Return viscosity over stiffness, normal and in shear [2, columns], s; None without any.
 
     A dashpot eta K of a joint within a contact of K' is one of eta K'^2 / K across the contact, to
@@ -182,16 +179,11 @@ def _time_constants(
     own = set_time_constants(scene)
     if own is None:
         return None
-    sets, rayleigh = scene.joint_sets, scene.damping.rayleigh
-    if rayleigh is not None:
-        return np.full((2, len(normal)), rayleigh.coefficients[1])
-    eta = np.zeros((2, len(normal)))
-    for row, whole, key in zip(
-        eta, (normal, shear), ("normal_stiffness", "shear_stiffness"), strict=True
-    ):
-        stiffness = np.array([*(getattr(one, key) for one in sets), np.inf])
-        row[:] = np.append(own, 0.0)[which] * whole / stiffness[which]
-    return eta
+    if scene.damping.rayleigh is not None:
+        return np.full_like(stiffness, scene.damping.rayleigh.coefficients[1])
+    of_sets = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
+    of_joints = np.array([*of_sets, (np.inf, np.inf)]).T
+    return np.append(own, 0.0)[which] * stiffness / of_joints[:, which]
 
 
 def _rules(scene: RockMass, which: np.ndarray) -> list[Rule]:

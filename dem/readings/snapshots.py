@@ -2,99 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.dem.kernel.model import State
 from jointwave.dem.readings.samples import turning, velocity_of
 from jointwave.dem.sides.boundaries import freedoms
 from jointwave.dem.system import BlockSystem
-from jointwave.results.snapshots import (
-    SnapshotRecorder,
-    in_space,
-    snapshots,
-    with_slip,
-    with_snapshots,
-)
-
-if TYPE_CHECKING:
-    from jointwave.cases.scene_type import AnyScene
-
-
-class BlockFrame(NamedTuple):
-    """All blocks at one instant: displacement and velocity [N, F], m and m/s, rad and rad/s, with
-    finite rotations unit quaternions, scalar last, in the displacement [N, 7]; stress of each, Pa
-    [N] or [N, components], and the slip of contacts, m."""
-
-    displacement: np.ndarray
-    velocity: np.ndarray
-    stress: np.ndarray
-    slip: np.ndarray
+from jointwave.results.snapshots import Frame, SnapshotRecorder, in_space
 
 
 class Bodies(NamedTuple):
     """Bodies of blocks, as snapshots show them.
 
-    corners : float array [k, d], m, of a pillar always in space. arms : from the centroids [k, d],
-    m. owner : the block of each [k]. kind, cells, block : as in `results.snapshots`. joints : lines
-    whose slip is shown, ends [j, 2, 2], m, and contacts [j]; None without. from_start : whether
-    displacement and slip count from the first snapshot.
+    corners : float array [k, d], m, of a pillar always in space. kind, cells, block : as in
+    `results.snapshots`. owner : the block of each corner [k]. arms : from its centroid [k, d], m.
+    joints : lines whose slip is shown, ends [j, 2, 2], m, and contacts [j]; None without.
     """
 
     corners: np.ndarray
-    arms: np.ndarray
-    owner: np.ndarray
     kind: str
     cells: np.ndarray
     block: np.ndarray
+    owner: np.ndarray
+    arms: np.ndarray
     joints: tuple[np.ndarray, np.ndarray] | None
-    from_start: bool
+
+    def frame(self, u: np.ndarray, v: np.ndarray, stress: np.ndarray, slip: np.ndarray) -> Frame:
+        """Return a snapshot by displacement and velocity of all blocks [N, F], with finite
+        rotations unit quaternions, scalar last, in the displacement [N, 7]; by the stress of each,
+        Pa [N] or [N, components], and the slip of all contacts, m."""
+        moved = corner_motion(u, self.owner, self.arms)
+        moving = corner_velocity(u, v, self.owner, self.arms)
+        shown = np.zeros(0) if self.joints is None else slip[self.joints[1]]
+        return moved, moving, stress[self.block], shown
 
 
-class BlockRecorder(SnapshotRecorder):
-    """The blocks at every snapshot of a scene; raises SceneError for too many."""
-
-    def __init__(
-        self, scene: AnyScene, bodies: Bodies, capture: Callable[[int], BlockFrame]
-    ) -> None:
-        super().__init__(scene, len(bodies.corners), capture)
-        self.bodies = bodies
-
-    def add_to(self, result: xr.Dataset) -> xr.Dataset:
-        """Return the run's result with its snapshots."""
-        time, own = result["time"].values[:: self.every], self.bodies
-        u, v, stress, slip = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
-        if own.from_start:
-            u, slip = u - u[0], slip - slip[0]
-        cells = own.corners, own.kind, own.cells, own.block
-        moved = corner_motion(u, own.owner, own.arms)
-        moving = corner_velocity(u, v, own.owner, own.arms)
-        found = with_snapshots(result, snapshots(time, *cells, moved, moving, stress[:, own.block]))
-        if own.joints is None:
-            return found
-        ends, contacts = own.joints
-        return with_slip(found, in_space(ends), slip[:, contacts])
-
-
-def recorder(system: BlockSystem, state: State) -> BlockRecorder | None:
-    """Return the recorder of snapshots; None without."""
+def recorder(system: BlockSystem, state: State) -> SnapshotRecorder | None:
+    """Return the recorder of snapshots; None without. Raises SceneError for too many."""
     blocks = system.blocks
     if blocks.scene.record.fields is None:
         return None
-    reads = blocks.receivers.of_all(blocks)
+    reads, bodies = blocks.receivers.of_all(blocks), blocks.bodies
 
-    def capture(sample: int) -> BlockFrame:
-        """Return all blocks at a sample."""
+    def capture(sample: int) -> Frame:
         found = system.sampled(state, sample, reads.places, reads.watched)
-        stress, slip = reads.shown(system, found, sample)
         moved, moving = found.displacement[..., 0], velocity_of(blocks, found)[..., 0]
-        return BlockFrame(moved, moving, stress, slip)
+        return bodies.frame(moved, moving, *reads.shown(system, found, sample))
 
-    return BlockRecorder(blocks.scene, blocks.bodies, capture)
+    joints = None if bodies.joints is None else bodies.joints[0]
+    return SnapshotRecorder(blocks.scene, len(bodies.corners), bodies[:4], capture, joints)
 
 
 def triangles(pieces: Outlines) -> tuple[np.ndarray, np.ndarray]:

@@ -36,18 +36,12 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
     if scene.prestress is not None:
         # Openings have been excavated: nothing holds their walls.
         stress, openings = scene.prestress.tensor, [s for s in sides if s.startswith("opening")]
-        bear, slide, walls = (
-            facets_on(cut, sides, names)
-            for names in (
-                scene.boundaries.sides("free", "quiet"),
-                scene.boundaries.sides("roller"),
-                openings,
-            )
-        )
+        bear = facets_on(cut, sides, scene.boundaries.sides("free", "quiet"))
+        slide = facets_on(cut, sides, scene.boundaries.sides("roller"))
         patterns.append(reactions(cut, bear, stress))
         patterns.append(reactions(cut, slide, stress, along=True))
         if scene.excavated:
-            opened = reactions(cut, walls, stress)
+            opened = reactions(cut, facets_on(cut, sides, openings), stress)
 
     def waves(field: IncidentField | None, rows: np.ndarray, time: Clock) -> list[Source]:
         field = free_field(scene) if field is None else field

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import step_means
 from jointwave.cases.sampling import Clock
 from jointwave.dem.kernel.composition import instants
 from jointwave.dem.sides.boundaries import points_on, resultants, summed
@@ -27,12 +29,10 @@ class Pattern(NamedTuple):
     history: LoadHistory | None
 
 
-class Source(Protocol):
-    """Forces that are no pattern times a history."""
-
-    def at(self, steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
-        """Return what acts in equally spaced steps [n] of dt, s, on some of the rows [k],
-        ascending, as a matrix [a, d + d^2] makes it of resultants: [n, k, a]."""
+#: Forces that are no pattern times a history, of (steps, dt, rows, onto): what acts in equally
+#: spaced steps [n] of dt, s, on some of the rows [k], ascending, as a matrix [a, d + d^2] makes it
+#: of resultants: [n, k, a].
+Source = Callable[[np.ndarray, float, np.ndarray, np.ndarray], np.ndarray]
 
 
 class Loads:
@@ -89,10 +89,10 @@ class Loads:
             if history is not None and self.composed:
                 mean[:] = history.value(self.time.dt * steps)
             elif history is not None:
-                mean[:] = mean_of(history, steps, self.time.dt)
+                mean[:] = step_means(history, self.time.dt, steps)
         found = np.tensordot(means, self.shapes[:, rows] @ onto.T, axes=(0, 0))
         for wave in self.waves if len(steps) else ():
-            found += wave.at(steps, self.time.dt, rows, onto)
+            found += wave(steps, self.time.dt, rows, onto)
         return found
 
     def impulse(self, inertia: np.ndarray, frequency: float | None) -> float:
@@ -113,22 +113,6 @@ class Loads:
             forces = self._on_blocks(some) - self.steady
             felt += float(np.sqrt((forces**2 / inertia).sum(axis=(1, 2))).sum())
         return time.dt * stride * felt
-
-
-def mean_of(
-    history: LoadHistory, steps: np.ndarray, dt: float, late: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Return the mean of a history over equally spaced steps [n] of dt, s, [..., n].
-
-    late : by how much the history begins later [..., 1], s. Means over consecutive steps add up to
-    its impulse to the last digit.
-    """
-    if len(steps) and steps[-1] - steps[0] == len(steps) - 1:
-        edges = dt * (np.append(steps, steps[-1] + 1) - 0.5)
-        return np.diff(history.impulse(edges - late), axis=-1) / dt
-    edges = dt * (steps + np.array([[0.5], [-0.5]]))
-    after, before = (history.impulse(one - late) for one in edges)
-    return (after - before) / dt
 
 
 def reactions(

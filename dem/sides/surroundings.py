@@ -74,19 +74,18 @@ class Surroundings(NamedTuple):
         return np.unique(np.concatenate(own))
 
 
-class DashpotsOfBase:
-    """What the dashpots before a moving base push with: `dem.sides.loads.Source`.
+def before_base(row: int, push: np.ndarray, moving: Shaking) -> Source:
+    """Return what the dashpots before a moving base push with, by its mean velocity over both half
+    steps.
 
     row : of the block. push : resultants over the base's velocity [d + d^2, d], N s/m.
     """
 
-    def __init__(self, row: int, push: np.ndarray, moving: Shaking) -> None:
-        self.row, self.push, self.moving = row, push, moving
-
-    def at(self, steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
-        """See `loads.Source`: by the mean velocity of the base over both half steps."""
+    def acting(steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
         found = np.zeros((len(steps), len(rows), len(onto)))
-        begin = self.moving(np.maximum(steps - 1, 0))[:, 0] * (steps > 0)[:, None]
-        mean = (begin + self.moving(steps)[:, 0]) / 2
-        found[:, rows == self.row] = (mean @ (onto @ self.push).T)[:, None]
+        begin = moving(np.maximum(steps - 1, 0))[:, 0] * (steps > 0)[:, None]
+        mean = (begin + moving(steps)[:, 0]) / 2
+        found[:, rows == row] = (mean @ (onto @ push).T)[:, None]
         return found
+
+    return acting

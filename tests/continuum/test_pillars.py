@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases.loads import load_history, step_means
-from jointwave.continuum.loads.ends import force_and_moment
-from jointwave.continuum.loads.forces import pushes
+from jointwave.continuum.loads.forces import force_and_moment, pushes
 from jointwave.continuum.run import simulate
 from jointwave.continuum.scene import body_of
 from tests.continuum.bodies import BLOW, blow, oblique
@@ -45,7 +44,7 @@ def test_the_start_carries_the_load(short, dim):
     result = simulate(scene, dim=dim)
     stride = round(scene.interval / result.attrs["dt"])
     count = result.sizes["time"]
-    load = step_means(load_history(scene), result.attrs["dt"], count * stride)[::stride]
+    load = step_means(load_history(scene), result.attrs["dt"], stride * np.arange(count))
     x, y, z = oblique(dim)
     expected = 1e5 * 1e-9
     found = result.isel(stress_y=0)

@@ -24,12 +24,12 @@ from jointwave.dem.readings.receivers import (
     stencils_in_rock,
     stencils_on_joints,
 )
-from jointwave.dem.readings.snapshots import BlockFrame, BlockRecorder, triangles
+from jointwave.dem.readings.snapshots import triangles
 from jointwave.dem.readings.waveforms import at_points, mean_stress, quantities
 from jointwave.dem.run import simulate
 from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.dataset import dataset
-from jointwave.results.snapshots import snapshots_of
+from jointwave.results.snapshots import SnapshotRecorder, snapshots_of
 from jointwave.results.stress import stress_components
 
 WALL = Path(__file__).parents[2] / "cases/rock-mass/masonry-wall.toml"
@@ -300,10 +300,13 @@ def test_snapshots_of_a_scene_in_space(tmp_path):
     found, bodies = blocks_of_scene(scene), rigid_blocks(scene).bodies
     draw, count = np.random.default_rng(8).normal, found.count
     frames = [
-        BlockFrame(draw(size=(count, 6)), draw(size=(count, 6)), draw(size=(count, 6)), np.zeros(0))
+        (draw(size=(count, 6)), draw(size=(count, 6)), draw(size=(count, 6)), np.zeros(0))
         for _ in range(3)
     ]
-    recorder = BlockRecorder(scene, bodies, lambda k: frames[k // recorder.every])
+    shown = [bodies.frame(*one) for one in frames]
+    recorder = SnapshotRecorder(
+        scene, len(bodies.corners), bodies[:4], lambda k: shown[k // recorder.every]
+    )
     times = np.arange(2 * recorder.every + 1) * scene.interval
     for k in range(len(times)):
         recorder.record_if_due(k)
@@ -311,9 +314,9 @@ def test_snapshots_of_a_scene_in_space(tmp_path):
     assert s.kind == "triangle" and len(s.time) == 3 and s.stress.shape[2] == 6
     assert len(np.unique(s.block)) == count and not s.displacement[0].any()
     arm = bodies.corners - found.centroid[bodies.owner]
-    own = frames[2].velocity[bodies.owner]
+    own = frames[2][1][bodies.owner]
     np.testing.assert_allclose(s.velocity[2], own[:, :3] + np.cross(own[:, 3:], arm), atol=1e-12)
-    np.testing.assert_array_equal(s.stress[1], frames[1].stress[s.block])
+    np.testing.assert_array_equal(s.stress[1], frames[1][2][s.block])
     path = write_pvd(tmp_path / "wall.pvd", s)
     held = meshio.read(path.with_name("wall-fields") / "0002.vtu")
     assert held.cell_data["stress"][0].shape == (len(s.cells), 6)

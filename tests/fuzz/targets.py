@@ -83,7 +83,7 @@ def examine(one):
     if not one.is_column:
         return blocks_of_scene(one) if partition_bytes(one) <= TINY_PARTITION else None
     calibrate(one)
-    step_means(load_history(one), one.interval, 4)
+    step_means(load_history(one), one.interval, np.arange(4))
     from jointwave.continuum.mesh.size import elements_along
 
     for name in (name for name in answers if name.startswith("continuum") and answers[name]):

@@ -106,7 +106,7 @@ def off_chain(run):
     mass = np.full(p.block_count, p.block_mass)
     root = np.sqrt(p.stiffness * p.area)[:, None] * np.diff(np.eye(p.block_count), axis=0)
     steps = np.rint(run.result["time"].values / dt).astype(int)
-    force = p.area * step_means(load_history(run.scene), dt, int(steps[-1]) + 1)
+    force = p.area * step_means(load_history(run.scene), dt, np.arange(int(steps[-1]) + 1))
     u = of_modes(modes(mass, root), np.eye(p.block_count)[0], force, steps, dt)
     centres = p.spacing * (np.arange(p.block_count) + 0.5)
     left, right, weight = interpolation(centres, run.scene.record.velocity)

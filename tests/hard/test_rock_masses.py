@@ -48,7 +48,7 @@ def test_free_blocks_move_as_leapfrog_in_closed_form(changes, variant):
     partition = blocks_of_scene(run.scene)
     steps = np.rint(run.result["time"].values / run.dt).astype(int)
     (load,) = run.scene.loads
-    force = step_means(history_of(load, load.amplitude), run.dt, int(steps[-1]) + 1)
+    force = step_means(history_of(load, load.amplitude), run.dt, np.arange(int(steps[-1]) + 1))
     own = modes(masses(run.scene, partition)[0].ravel(), root_of(run.scene, partition))
     u = of_modes(own, unit_force(run.scene, partition), force, steps, run.dt)
     exact = (reads(run.scene, partition) @ u).reshape(-1, 2, len(steps)).swapaxes(1, 2)

@@ -56,7 +56,7 @@ def pillar(scene: Scene, stride: int) -> Pillar:
     """
     p, dt = calibrate(scene), scene.interval / stride
     steps = stride * (len(sample_times(scene)) - 1)
-    means = step_means(load_history(scene), dt, steps + 1)
+    means = step_means(load_history(scene), dt, np.arange(steps + 1))
     places = scene.record.stress
     joint = round(places[0] / p.spacing) if places else 0
     if len(places) != 1 or abs(joint * p.spacing - places[0]) > 1e-9:

@@ -85,7 +85,7 @@ class RunCheckpointer:
         if asked:
             message = f"{WORDS[asked]} at t = {self._time(samples):.4g} s"
             error = InterruptedRun(message + ", --resume continues from there" * bool(saved))
-            error.code = Ended(asked).code
+            error.samples, error.code = samples, Ended(asked).code
             raise error
 
     def finished(self) -> xr.Dataset | None:

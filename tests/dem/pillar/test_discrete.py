@@ -46,7 +46,7 @@ BLOWS = {
 
 def closed_form(scene, dt, steps):
     """Return displacements and rotations [freedoms, N] of leapfrog after steps of dt (s)."""
-    stress, (mass, contacts) = step_means(load_history(scene), dt, steps), bodies(scene)
+    stress, (mass, contacts) = step_means(load_history(scene), dt, np.arange(steps)), bodies(scene)
     count, c = scene.block_count, mass.shape[1]
     drive = drive_vector(scene)[own_freedoms(scene)]
     place = relative(contacts, *mass.shape)[:c, : count * c].T @ drive
