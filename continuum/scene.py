@@ -62,10 +62,8 @@ class SceneBody(NamedTuple):
         if self.body.x.shape[1] > 1:
             full = np.array([tensor(one) for one in stiffness])
             return np.stack([full[:, i, j] for i, j in pairs], axis=1)
-        moduli, along = (
-            np.zeros((len(stiffness), 1, stiffness.shape[1], 1)),
-            self.body.components // 2,
-        )
+        along = self.body.components // 2
+        moduli = np.zeros((len(stiffness), 1, stiffness.shape[1], 1))
         moduli[:, 0, along, 0] = stiffness[:, along, along]
         return moduli
 

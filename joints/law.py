@@ -169,26 +169,18 @@ class Traction(NamedTuple):
 
 def parts_of(law: Law) -> LawFlags:
     """Return the parts of a law."""
-    shear = law.shear_stiffness is not None
-    slip = law.cohesion is not None or law.friction is not None
-    no_tension, softening = law.carries_tension is not None, law.tensile_strength is not None
-    weakening = shear and law.weakening_distance is not None
-    dilation = shear and law.dilation is not None
-    rate_state = shear and law.direct_effect is not None
+    has = {
+        part: any(getattr(law, name) is not None for name in names)
+        for part, names in OF_PART.items()
+    }
+    has["closure"] = law.maximum_closure is not None  # whatever share the rock has
+    for part in ("weakening", "dilation", "rate_state"):
+        has[part] = has[part] and has["shear"]
     return LawFlags(
-        dashpots=law.normal_viscosity is not None or law.shear_viscosity is not None,
-        no_tension=no_tension,
-        softening=softening,
-        shear=shear,
-        slip=slip,
-        residual=law.residual_cohesion is not None,
-        limited=shear and (slip or no_tension or softening),
+        **has,
+        limited=has["shear"] and (has["slip"] or has["no_tension"] or has["softening"]),
         varied=any(np.ndim(value) for value in law if value is not None),
-        closure=law.maximum_closure is not None,
-        weakening=weakening,
-        dilation=dilation,
-        rate_state=rate_state,
-        path=weakening or dilation or rate_state,
+        path=has["weakening"] or has["dilation"] or has["rate_state"],
     )
 
 

@@ -24,11 +24,11 @@ from jointwave.continuum.space.evaluation import matrix_of, places_in
 from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.model import Body, Facets, directions, forces_on
 
+mesh = dolfinx.mesh
 IN_A_PERIOD = 100  # samples of a field that is not evaluated at every step
 AT_ONCE = 500_000  # numbers: forces that are in memory at a time for their impulse
 NEAR = 1e-9  # of a pillar: what is at an end
 GAUSS = 6  # points between two nodes: exact for elements of the highest order
-
 
 #: Waves that enter through quiet sides: freedoms there, int array [points d], and a function of
 #: equally spaced times [n], s, that returns the forces on them [n, points d], N.
@@ -130,7 +130,7 @@ def end_force(scene: Scene, body: Body, load: Load) -> np.ndarray:
     if not moment.any() or body.mesh.geometry.dim == 1 or body.tied is not None:
         return share
     # Tractions that are linear between nodes are forces by the form of u . v over the end.
-    mesh, domain, y = dolfinx.mesh, body.mesh, float(facets.place[0, 1])
+    domain, y = body.mesh, float(facets.place[0, 1])
     near, dim = NEAR * float(np.ptp(body.x[:, 1])), domain.topology.dim - 1
     own = mesh.locate_entities_boundary(domain, dim, lambda x: np.abs(x[1] - y) <= near)
     tags = mesh.meshtags(domain, dim, np.sort(own), np.ones(len(own), np.int32))

@@ -186,10 +186,8 @@ def own_cells(body: Complex) -> Conforming:
 def are_simplices(body: Complex) -> bool:
     """Return whether all cells of a complex are triangles or tetrahedra."""
     half = body.halves()
-    facets, corners = (
-        np.bincount(cell, minlength=body.count) for cell in (half.cell, body.corners(half)[:, 0])
-    )
-    return bool((facets == body.dim + 1).all() and (corners == body.dim + 1).all())
+    each = half.cell, body.corners(half)[:, 0]  # the cell of each facet, and of each corner
+    return all((np.bincount(one, minlength=body.count) == body.dim + 1).all() for one in each)
 
 
 def _oriented(mesh: Conforming) -> Conforming:

@@ -21,17 +21,14 @@ def recorded(
     about: Mapping[str, Any],
 ) -> xr.Dataset:
     """Return the samples at these times, the first ones, as a result with attributes."""
-    name, samples = (
-        f"continuum-{about['model']}",
-        Samples(*(one[:, : len(times)] for one in samples)),
-    )
+    samples = Samples(*(one[:, : len(times)] for one in samples))
     terms, energy = ledger(scene, problem, samples)
     if not scene.is_column:
         waves = of_rock_mass(problem.body.components, samples)
     else:
         waves = of_pillar(problem, samples)
         energy = None if energy is None else extent_of(scene, problem.body) * energy
-    return dataset(scene, name, times, waves, energy, terms, **about)
+    return dataset(scene, f"continuum-{about['model']}", times, waves, energy, terms, **about)
 
 
 def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:

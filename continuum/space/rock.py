@@ -17,7 +17,7 @@ from ufl import dx, grad, inner, sym
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
-from jointwave.cases.material.effective_medium import PAIRS, compliant, stiffness
+from jointwave.cases.material.effective_medium import compliant, stiffness, tensor
 from jointwave.cases.material.rock import (
     ElasticRock,
     elastic_rock,
@@ -98,24 +98,12 @@ def _of_cells(space: Any, density: np.ndarray, stiffness: np.ndarray) -> Forms:
     constants = cell_constants(space.mesh, stiffness[:, *upper])
     number[upper] = range(len(upper[0]))
     number = np.maximum(number, number.T)
-    voigt = [[constants[int(k)] for k in row] for row in number]
     rho = cell_constants(space.mesh, density[:, None])[0]
     if space.mesh.geometry.dim == 1:
-        C = ufl.as_matrix(voigt)
+        C = ufl.as_matrix([[constants[int(k)] for k in row] for row in number])
         return elastic(space, rho, lambda slope: C * slope, None)
-    return anisotropic(space, rho, _tensor(voigt))
-
-
-def _tensor(voigt: list[list[Any]]) -> Any:
-    """Return C_ijkl of Voigt's form."""
-    dim = {3: 2, 6: 3}[len(voigt)]
-    number = {pair: n for n, pair in enumerate(PAIRS[dim])}
-    number |= {(j, i): n for (i, j), n in number.items()}
-    axes = range(dim)
-    return ufl.as_tensor([
-        [[[voigt[number[i, j]][number[k, m]] for m in axes] for k in axes] for j in axes]
-        for i in axes
-    ])  # fmt: skip
+    moduli = [[[[constants[int(k)] for k in a] for a in b] for b in c] for c in tensor(number)]
+    return anisotropic(space, rho, ufl.as_tensor(moduli))
 
 
 def rock_mass(scene: RockMass, smeared: list[JointSet], model: str) -> list[Material]:

@@ -32,18 +32,15 @@ class EndSpring(NamedTuple):
 
     def at(self, dt: float) -> np.ndarray:
         """Return the matrices of `model.Held` for steps of dt, s [3, F, F]."""
-        stiffness, _, decay, gain, _ = self._halves(dt)
-        along = gain[:, None] * self.lever
-        return np.stack([np.diag(decay), along, self.lever.T * stiffness])
+        half = half_spring(self.stiffness, self.eta, self.dashpot, dt)
+        along = half.gain[:, None] * self.lever
+        return np.stack([np.diag(half.decay), along, self.lever.T * half.stiffness])
 
     @property
     def critical(self) -> np.ndarray:
         """Stiffness at the critical step [F, F]."""
-        return self.lever.T * self._halves(0.0)[4] @ self.lever
-
-    def _halves(self, dt: float) -> np.ndarray:
-        pairs = zip(self.stiffness, self.dashpot, strict=True)
-        return np.array([half_spring(k, self.eta, z, dt) for k, z in pairs]).T
+        half = half_spring(self.stiffness, self.eta, self.dashpot)
+        return self.lever.T * half.critical_stiffness @ self.lever
 
 
 class Surroundings(NamedTuple):
