@@ -9,7 +9,7 @@ from jointwave.results.snapshots import snapshots_of
 DASHPOTS = {"damping_ratio": 0.05}
 SLIP = {"friction_angle": 30.0, "cohesion": 2e4}
 WORN = {"dynamic_friction_angle": 12.0, "weakening_distance": 2e-5}
-WORN |= {"dilation_angle": 6.0, "dilation_distance": 4e-5}
+WORN |= {"dilation_angle": 6.0, "dilation_distance": 4e-5, "residual_cohesion": 0.0}
 RATE = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-5}
 RATE |= {"reference_rate": 1e-6, "initial_state": 1.0, "cohesion": None}
 LAWS = {
@@ -17,8 +17,7 @@ LAWS = {
     "dashpots": DASHPOTS,
     "no tension": {"tension": False},
     "slip": SLIP,
-    "slip with dashpots and lost cohesion": SLIP | DASHPOTS | {"residual_cohesion": 0.0},
-    "slip that weakens and lifts, with dashpots": SLIP | WORN | DASHPOTS,
+    "slip that weakens, lifts and loses its cohesion": SLIP | WORN | DASHPOTS,
     "rate and state": SLIP | RATE,
     "softening": SLIP | DASHPOTS | {"tensile_strength": 5e4, "fracture_energy": 0.75},
 }
