@@ -45,7 +45,7 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
         "fixed start": (scene.ends.start == "fixed", "the loaded end is fixed"),
     }
     beyond = (one for name, one in physics.items() if name not in held)
-    return next((Answer(why) for there, why in (*beyond, *against) if there), Answer())
+    return Answer.unless(*beyond, *against)
 
 
 def static_stress(scene: Scene) -> float:

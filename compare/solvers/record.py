@@ -63,6 +63,11 @@ class Answer(NamedTuple):
     def __bool__(self) -> bool:
         return not self.reason
 
+    @classmethod
+    def unless(cls, *against: tuple[object, str]) -> Answer:
+        """Return yes, or of the conditions that are met the reason beside the first."""
+        return cls(next((why for there, why in against if there), ""))
+
 
 LINE = 1.5  # points, of a line whose width is 1.5
 PERIOD = 18.0  # of the dash patterns of exact solutions, in line widths

@@ -31,12 +31,18 @@ from jointwave.cases.schema.rock_mass import IntactRock, RockMass
 from jointwave.compare.engines import Progress, names, solve
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
-from jointwave.compare.exact.plane.pulse import axes_of
-from jointwave.compare.exact.plane.waves import KINDS, Kind, polarisations, slownesses_across
-from jointwave.compare.exact.rock_mass.conditions import all_parallel, beyond_linear_rock
+from jointwave.compare.exact.plane.waves import (
+    KINDS,
+    Kind,
+    axes_of,
+    polarisations,
+    slownesses_across,
+)
+from jointwave.compare.exact.rock_mass.conditions import all_parallel, linear_rock
 from jointwave.compare.exact.rock_mass.stack import stack_of
 from jointwave.compare.readings.recordings import variables
 from jointwave.compare.scenes import AnySource, load
+from jointwave.compare.solvers.record import Answer
 
 SCENE = Path(__file__).parent / "joints.toml"
 BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
@@ -125,16 +131,15 @@ def _require(right: bool, key: str, value: object, allowed: str) -> None:
 def _joints_of(scene: RockMass, frequency: float | None) -> ParallelJoints:
     """Return the joints of a rock mass under a wave of a frequency, Hz, None: of the scene's first
     pulse; raises SceneError where they are no series of joints."""
-    reasons = [
+    answer = Answer.unless(
         (scene.in_space, "it is in space"),
         (not scene.joint_sets, "there is no joint"),
         (bool(scene.regions), "regions differ in rock"),
         (bool(scene.domain.holes), "openings cut the joints"),
         (not all_parallel(scene), "joints are not parallel"),
-    ]
-    why = next((why for there, why in reasons if there), None) or beyond_linear_rock(scene)
-    if why:
-        raise SceneError(scene.where, "", None, f"{NONE}: {why}")
+    ) and linear_rock(scene)
+    if not answer:
+        raise SceneError(scene.where, "", None, f"{NONE}: {answer.reason}")
     if frequency is None:
         periods = [found for one in scene.pulses if (found := getattr(one, "period", None))]
         if not periods:

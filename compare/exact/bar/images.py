@@ -28,6 +28,7 @@ from jointwave.compare.exact.conditions import holds, static_stress
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
+Signal = Callable[[np.ndarray], np.ndarray]
 MOST_TRIPS = 1_000_000  # through the bar and back
 
 #: Reflection coefficient of stress at an end of the bar.
@@ -84,49 +85,28 @@ class Front(NamedTuple):
     def waves(
         self, load: LoadHistory, times: np.ndarray, stress_y: list[float], velocity_y: list[float]
     ) -> list[np.ndarray]:
-        """Return its stress, velocity and displacement [receivers, n]."""
-        found, signals = list[np.ndarray](), (load.value, load.value, load.impulse)
-        for signal, places in zip(signals, (stress_y, velocity_y, velocity_y), strict=True):
-            y, out = np.array(places), np.zeros((len(places), len(times)))
-            sign, scale = (-1, self.impedance) if found else (1, 1.0)
-            shares = self.shares(y)
-            ahead = shares > 0
-            bar = self.length, self.speed, self.start, self.end
-            there, back = images(signal, y[ahead], times, *bar)
-            out[ahead] = shares[ahead, None] * self.enters / scale * (there + sign * back)
-            found.append(out)
+        """Return its stress, velocity and displacement [receivers, n] under a load that is zero
+        before t = 0."""
+        there, back = self._travelling(load.value, np.array(stress_y), times)
+        found = [there + back]
+        for signal in (load.value, load.impulse):
+            there, back = self._travelling(signal, np.array(velocity_y), times)
+            found.append((there - back) / self.impedance)
         return found
 
-
-def images(
-    signal: Callable[[np.ndarray], np.ndarray],
-    places: list[float] | np.ndarray,
-    times: np.ndarray,
-    length: float,
-    speed: float,
-    start: float = -1.0,
-    end: float = -1.0,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the waves travelling away from the start and back to it, each [places, times].
-
-    Stress is their sum, particle velocity their difference over the impedance.
-
-    Parameters
-    ----------
-    signal : the wave entering at y = 0, a function of time (s), zero before t = 0.
-    places, times : m and s.
-    length, speed : of the bar, m and m/s.
-    start, end : reflection coefficients of stress at the two ends.
-    """
-    y, t = np.asarray(places, dtype=float)[:, None], np.asarray(times, dtype=float)
-    there, back = np.zeros((2, len(y), len(t)))
-    for k in range(floor(speed * t[-1] / (2 * length)) + 1):
-        trips = (start * end) ** k
-        if trips:
-            there += trips * signal(t - (2 * k * length + y) / speed)
-        if trips * end:
-            back += trips * end * signal(t - (2 * (k + 1) * length - y) / speed)
-    return there, back
+    def _travelling(self, signal: Signal, places: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """Return the waves away from the start and back to it [2, places, times]."""
+        shares, both = self.shares(places), np.zeros((2, len(places), len(times)))
+        ahead = shares > 0
+        y = places[ahead, None]
+        for k in range(floor(self.speed * times[-1] / (2 * self.length)) + 1):
+            trips = (self.start * self.end) ** k
+            if trips:
+                both[0, ahead] += trips * signal(times - (2 * k * self.length + y) / self.speed)
+            if trips * self.end:
+                late = (2 * (k + 1) * self.length - y) / self.speed
+                both[1, ahead] += trips * self.end * signal(times - late)
+        return self.enters * shares[:, None] * both
 
 
 SOLVER = Solver(

@@ -1,14 +1,14 @@
 """A plane pulse among parallel joints, at many places together.
 
-Each layer contains plane waves to and fro (`pulse`). A travelling wave is the same pulse everywhere
-in the layer, only delayed, so its amplitude is inverted once and read at each place by Lagrange's
-polynomial through 2 HALF samples. An evanescent one decays with the depth d as e^{i omega q d}: it
-is inverted at the depths of the places or, if there are many, at Chebyshev points, between which it
-is interpolated in d (Trefethen, Approximation Theory and Approximation Practice, 2013). The part
-that follows a pulse without delay is summed in time, with all its kinks.
+Each layer contains plane waves to and fro (`parallel_joints`). A travelling wave is the same pulse
+everywhere in the layer, only delayed, so its amplitude is inverted once and read at each place by
+Lagrange's polynomial through 2 HALF samples. An evanescent one decays with the depth d as
+e^{i omega q d}: it is inverted at the depths of the places or, if there are many, at Chebyshev
+points, between which it is interpolated in d (Trefethen, Approximation Theory and Approximation
+Practice, 2013). The part that follows a pulse without delay is summed in time, with all its kinks.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import prod
 from typing import NamedTuple
@@ -17,8 +17,10 @@ import numpy as np
 
 from jointwave.cases.incident import WaveMotion
 from jointwave.compare.exact.inversion import FINE, QUICK, ROUGH, STEPS, Accuracy, inverse
-from jointwave.compare.exact.plane.pulse import Pulse, PulseStack, modes_of
+from jointwave.compare.exact.plane.parallel_joints import PulseStack
 
+#: Particle velocity (m/s) as a function of times (s), along the polarisation of the wave.
+Pulse = Callable[[np.ndarray], np.ndarray]
 HALF = 4  # samples on either side
 NODES = range(-HALF + 1, HALF + 1)  # the samples, from the one before a time on
 MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE more than its decay requires
@@ -85,7 +87,7 @@ def motion(
     from which the pulse comes. times : equally spaced, s.
     """
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
-    modes = modes_of(stack)
+    modes = stack.modes
     highest = _highest(pulse, t) if stack.is_evanescent else 0.0
     waves = list(_waves_of(stack, places, highest))
     fine, stride = _fine_times(stack, waves, t)

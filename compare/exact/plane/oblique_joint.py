@@ -14,14 +14,12 @@ Valid for every angle below 90 degrees and every K from 0 (free faces) to inf (w
 1919, Aki & Richards, Quantitative Seismology, 2002, section 5.2.4).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jointwave.cases.material.rock import ElasticRock, Values
-from jointwave.compare.exact.plane.pulse import Axes, Layers
-from jointwave.compare.exact.plane.waves import KINDS, Kind, face, is_evanescent
+from jointwave.compare.exact.plane.waves import KINDS, Kind, face
 
 
 @dataclass(frozen=True)
@@ -75,19 +73,3 @@ def _weights(
     whole = K - 1j * np.multiply(omega, Z)
     moves = np.where(rigid, 1.0, K / whole)
     return moves[..., None], np.where(rigid, 0.0, 1j * np.asarray(omega) / whole)[..., None]
-
-
-def layers_at_once(rocks: Sequence[ElasticRock], first: Joint, axes: Axes) -> Layers:
-    """Return the reflection and transmission without delay at the first joint between layers of
-    these rocks: the limit of high frequencies, in which springs do not act. Where P is evanescent
-    only the incident wave is real.
-    """
-    down, up = np.zeros((2, len(rocks), len(axes.kinds)))
-    down[0] = axes.incident
-    if axes.kinds != KINDS or not is_evanescent(rocks[0], axes.slowness):
-        springs = first.normal_stiffness, first.shear_stiffness
-        K_n, K_s = (np.where(np.isinf(K), K, 0.0) for K in springs)
-        bare = Joint(K_n, K_s, first.normal_viscosity, first.shear_viscosity)
-        R, T = scattering(rocks[0], bare, axes.slowness, 1.0, rocks[1], axes.kinds)
-        up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
-    return Layers(down, up)

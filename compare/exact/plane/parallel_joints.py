@@ -11,22 +11,41 @@ and forwards the waves behind each joint are D_i = Y_i E_{i-1} D_{i-1} (Kennett,
 Propagation in Stratified Media, 1983; at normal incidence Cai & Zhao, IJRMMS 37, 2000).
 No exponential grows: evanescent waves only decay. Axes, signs and validity are those of
 `oblique_joint`; joints and layers may differ, unless a wave in differing layers is evanescent.
+
+A pulse is the sum of such harmonic waves. At (x, z) in the axes (t, n) of the joints
+
+    v(t) = sum over waves of g A e^{i omega (p x +- q z)},   stress likewise (`waves.stress`).
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.incident import in_components
 from jointwave.cases.material.rock import ElasticRock, Values
-from jointwave.compare.exact.plane.oblique_joint import Joint, layers_at_once, scattering
-from jointwave.compare.exact.plane.pulse import Layers, PulseStack, axes_of
+from jointwave.compare.exact.plane.oblique_joint import Joint, scattering
 from jointwave.compare.exact.plane.waves import (
     KINDS,
+    Axes,
     Kind,
+    axes_of,
+    is_evanescent,
     kinds_with,
+    polarisations,
     slowness_along,
     slownesses_across,
+    stress,
 )
+
+
+class Layers(NamedTuple):
+    """Amplitudes [layers, omega, kinds] along +n at each layer's first joint, along -n at its
+    last; in the half-spaces both at their only joint."""
+
+    down: np.ndarray
+    up: np.ndarray
 
 
 def coefficients(
@@ -52,41 +71,21 @@ def coefficients(
 
 def layers(
     rocks: Sequence[ElasticRock],
-    joints: list[Joint],
+    joints: Sequence[Joint],
     spacings: np.ndarray,
     slowness: Values,
     omega: Values,
     incident: np.ndarray,
     kinds: tuple[Kind, ...] = KINDS,
 ) -> Layers:
-    """Return the waves of all layers under an incident one [kinds] at the first joint."""
-    R, Y = march(rocks, joints, spacings, slowness, omega, kinds)
-    E = _phases(rocks, spacings, slowness, omega, kinds)
-    down, up = [np.broadcast_to(incident, Y[0].shape[:-1])], [R[0] @ incident]
-    meets = down[0]
-    for i, y in enumerate(Y):
-        down.append((y @ meets[..., None])[..., 0])
-        if i < len(E):
-            meets = E[i] * down[-1]
-            up.append((R[i + 1] @ meets[..., None])[..., 0])
-    return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
-
-
-def march(
-    rocks: Sequence[ElasticRock],
-    joints: list[Joint],
-    spacings: np.ndarray,
-    slowness: Values,
-    omega: Values,
-    kinds: tuple[Kind, ...] = KINDS,
-) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return R_i and Y_i of every joint, complex arrays [..., kinds, kinds].
+    """Return the waves of all layers under an incident one [kinds] at the first joint.
 
     rocks : of the layers, one more than joints. slowness : s/m.
     """
+    turned, inner = 1j * np.asarray(omega)[..., None], list(zip(spacings, rocks[1:-1], strict=True))
+    E = [np.exp(turned * d * slownesses_across(rock, slowness, kinds)) for d, rock in inner]
     R, T = scattering(rocks[-2], joints[-1], slowness, omega, rocks[-1], kinds)
     reflected, behind = [R], [T]
-    E = _phases(rocks, spacings, slowness, omega, kinds)
     for k in range(len(joints) - 2, -1, -1):
         R, T = scattering(rocks[k], joints[k], slowness, omega, rocks[k + 1], kinds)
         back, returned = R, T
@@ -96,7 +95,82 @@ def march(
         Y = np.linalg.solve(np.eye(len(kinds)) - back @ rest, T)
         reflected.insert(0, R + returned @ rest @ Y)
         behind.insert(0, Y)
-    return reflected, behind
+    meets = np.broadcast_to(incident, behind[0].shape[:-1])
+    down, up = [meets], [reflected[0] @ incident]
+    for i, Y in enumerate(behind):
+        down.append((Y @ meets[..., None])[..., 0])
+        if i < len(E):
+            meets = E[i] * down[-1]
+            up.append((reflected[i + 1] @ meets[..., None])[..., 0])
+    return Layers(np.stack(down), np.stack([*up, np.zeros_like(up[0])]))
+
+
+class PulseStack(NamedTuple):
+    """Joints in the order in which a pulse meets them.
+
+    rocks : of the layers [N + 1]; where they differ no wave may be evanescent. joints : [N].
+    depths : along n, ascending, m, [N].
+    """
+
+    axes: Axes
+    rocks: Sequence[ElasticRock]
+    joints: Sequence[Joint]
+    depths: np.ndarray
+
+    def layers(self, omega: np.ndarray) -> Layers:
+        """Return the waves of all layers at omega (rad/s) under a unit one at the first joint."""
+        axes, spacings = self.axes, np.diff(self.depths)
+        of = self.rocks, self.joints, spacings, axes.slowness, omega, axes.incident
+        return layers(*of, axes.kinds)
+
+    @property
+    def at_once(self) -> Layers:
+        """Real amplitudes [layers, kinds] that follow a pulse without delay, by reflection and
+        transmission at the first joint in the limit of high frequencies, in which springs do not
+        act. Where P is evanescent only the incident wave is real.
+        """
+        axes, first = self.axes, self.joints[0]
+        down, up = np.zeros((2, len(self.rocks), len(axes.kinds)))
+        down[0] = axes.incident
+        if not self.is_evanescent:
+            springs = first.normal_stiffness, first.shear_stiffness
+            K_n, K_s = (np.where(np.isinf(K), K, 0.0) for K in springs)
+            bare = replace(first, normal_stiffness=K_n, shear_stiffness=K_s)
+            here, there = self.rocks[:2]
+            R, T = scattering(here, bare, axes.slowness, 1.0, there, axes.kinds)
+            up[0], down[1] = (R @ axes.incident).real, (T @ axes.incident).real
+        return Layers(down, up)
+
+    @property
+    def slownesses(self) -> np.ndarray:
+        """Slownesses across the joints of every layer, complex [layers, kinds], s/m."""
+        p, kinds = self.axes.slowness, self.axes.kinds
+        return np.array([slownesses_across(one, p, kinds) for one in self.rocks])
+
+    @property
+    def lead(self) -> complex:
+        """Arrival time of the pulse at the first joint, s."""
+        return self.slownesses[0, self.axes.kinds.index(self.axes.kind)] * self.depths[0]
+
+    @property
+    def is_evanescent(self) -> bool:
+        """Whether P waves decay away from the joints."""
+        return self.axes.kinds == KINDS and is_evanescent(self.rocks[0], self.axes.slowness)
+
+    @property
+    def modes(self) -> np.ndarray:
+        """Velocity, and stress over the first rock's Z_p, of unit waves of all kinds, along +n and
+        then along -n [layers, waves, d + components], as of a `WaveMotion`."""
+        axes, found = self.axes, []
+        for rock, across in zip(self.rocks, self.slownesses, strict=True):
+            g = np.tile(axes.rows[2:] + 0j, (2, 1))
+            if axes.kinds == KINDS:
+                g = polarisations(rock, axes.slowness).reshape(4, 2) @ axes.rows[:2]
+            along = np.full(len(g), axes.slowness)
+            s = np.stack([along, np.concatenate([across, -across])], axis=-1) @ axes.rows[:2]
+            tensor = stress(rock, s, g) / self.rocks[0].p_impedance
+            found.append(np.concatenate([g, in_components(tensor)], axis=1))
+        return np.array(found)
 
 
 def stack_of(
@@ -122,24 +196,4 @@ def stack_of(
     if np.asarray(direction) @ normal < 0:
         depths, met, rocks = -depths[::-1], met[::-1], rocks[::-1]
     axes = axes_of(rocks[0], kind, direction, normal, polarisation)
-    of = rocks, met, np.diff(depths), axes.slowness
-
-    def at(omega: np.ndarray) -> Layers:
-        return layers(*of, omega, axes.incident, axes.kinds)
-
-    return PulseStack(axes, depths, at, layers_at_once(rocks, met[0], axes), rocks)
-
-
-def _phases(
-    rocks: Sequence[ElasticRock],
-    spacings: np.ndarray,
-    slowness: Values,
-    omega: Values,
-    kinds: tuple[Kind, ...],
-) -> list[np.ndarray]:
-    """Return the diagonals of E_i, complex arrays [..., kinds]; rocks : of all layers."""
-    turned = 1j * np.asarray(omega)[..., None]
-    return [
-        np.exp(turned * d * slownesses_across(rock, slowness, kinds))
-        for d, rock in zip(spacings, rocks[1:-1], strict=True)
-    ]
+    return PulseStack(axes, rocks, met, depths)

@@ -23,6 +23,7 @@ Kind = Literal["P", "SV", "SH"]
 #: Kinds of waves that a face turns into each other: in the plane of incidence, and across it.
 KINDS: tuple[Kind, ...] = ("P", "SV")
 ACROSS: tuple[Kind, ...] = ("SH",)
+STRAIGHT = 1e-6  #: sine of the largest angle from the normal at which a wave travels along it
 
 
 class Face(NamedTuple):
@@ -62,6 +63,55 @@ def speed_of(rock: ElasticRock, kind: Kind) -> Values:
 def slowness_along(rock: ElasticRock, kind: Kind, angle: Values) -> np.ndarray:
     """Return p (s/m) of a wave at `angle` from n towards t, rad, less than a right one."""
     return np.sin(angle) / np.asarray(speed_of(rock, kind))
+
+
+class Axes(NamedTuple):
+    """Axes of the joints: rows t, n and, in space, b in those of the scene [d, d], n along the
+    travel; slowness p along t (s/m); the kind of the incident wave, and amplitudes of all `kinds`
+    that it becomes, of which its own alone is not zero."""
+
+    rows: np.ndarray
+    slowness: float
+    kind: Kind
+    incident: np.ndarray
+
+    @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """The kinds of waves that there are."""
+        return kinds_with(self.kind)
+
+
+def axes_of(
+    rock: ElasticRock,
+    kind: Kind,
+    direction: np.ndarray,
+    normal: np.ndarray,
+    polarisation: np.ndarray | None = None,
+) -> Axes:
+    """Return the axes of joints of a unit normal [d] for waves that travel in a direction [d], not
+    along the joints.
+
+    polarisation : of an S wave in space [3]: the part of it that moves rock as its kind does is the
+    incident amplitude.
+    """
+    direction = np.asarray(direction) / np.linalg.norm(direction)
+    n = np.asarray(normal) * (1.0 if direction @ normal > 0 else -1.0)
+    share = 1.0
+    if len(n) == 2:
+        rows = np.array([[-n[1], n[0]], n])
+    else:
+        t = direction - (direction @ n) * n
+        if np.linalg.norm(t) < STRAIGHT:
+            free = kind == "P" or polarisation is None
+            t = np.eye(3)[np.abs(n).argmin()] if free else np.asarray(polarisation)
+            t = t - (t @ n) * n
+        t = t / np.linalg.norm(t)
+        rows = np.array([t, n, np.cross(t, n)])
+        if polarisation is not None and kind != "P":
+            moved = rows[2] if kind == "SH" else (direction @ n) * t - (direction @ t) * n
+            share = float(moved @ polarisation)
+    slowness, kinds = direction @ rows[0] / speed_of(rock, kind), kinds_with(kind)
+    return Axes(rows, float(slowness), kind, share * np.eye(len(kinds))[kinds.index(kind)])
 
 
 def cosines(rock: ElasticRock, slowness: Values) -> tuple[np.ndarray, np.ndarray]:

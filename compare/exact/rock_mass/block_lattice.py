@@ -31,7 +31,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.blocks.events import NOISE, Loads, integrate
 from jointwave.compare.exact.blocks.system import Contacts, carried, contacts_of, first_order
 from jointwave.compare.exact.linear import bound
-from jointwave.compare.exact.rock_mass.conditions import beyond
+from jointwave.compare.exact.rock_mass.conditions import holds
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
@@ -46,7 +46,7 @@ def applies(scene: RockMass) -> Answer:
     held, sets = set(scene.boundaries.model_dump().values()), scene.joint_sets
     stuck = sorted(held - {None, "quiet", "free", "periodic"})
     most = MOST_BLOCKS[scene.domain.dimension]
-    reason = beyond(
+    return holds(
         scene,
         ("waves", "openings"),
         (bool(stuck), f"a side is {' and '.join(stuck)}"),
@@ -54,10 +54,7 @@ def applies(scene: RockMass) -> Answer:
         (not any(one.spacing for one in sets), "no joint set has a spacing"),
         (any(one.time_scale is None for one in scene.waves), "a wave has no period"),
         (not scene.record.points, "no point is recorded"),
-    )
-    if reason is None and block_count(scene.domain, sets) > most:
-        reason = f"more than {most:,} blocks"
-    return Answer(reason or "")
+    ) and Answer.unless((block_count(scene.domain, sets) > most, f"more than {most:,} blocks"))
 
 
 def solve(scene: RockMass) -> xr.Dataset:

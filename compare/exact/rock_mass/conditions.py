@@ -12,6 +12,7 @@ from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import Region, RockMass
+from jointwave.compare.solvers.record import Answer
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
 #: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:
@@ -26,9 +27,9 @@ class Face(NamedTuple):
     offset: float
 
 
-def beyond(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) -> str | None:
-    """Return the first reason why a solution for linear joints in undamped rock does not cover a
-    scene, None if it does.
+def holds(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
+    """Return whether a solution for linear joints in undamped rock applies to a scene, or the first
+    reason why not.
 
     held : physics that it covers, of the names below. against : other conditions that exclude it,
     each with its reason.
@@ -45,54 +46,49 @@ def beyond(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) -
         "regions": (bool(scene.regions), "regions differ in rock"),
         "damped joints": (damped, "the joints are damped"),
     }
-    reasons = (one for name, one in physics.items() if name not in held)
-    found = next((why for there, why in (*reasons, *against) if there), None)
-    return found or beyond_linear_rock(scene)
+    beyond = (one for name, one in physics.items() if name not in held)
+    return Answer.unless(*beyond, *against) and linear_rock(scene)
 
 
-def beyond_linear_rock(scene: RockMass) -> str | None:
-    """Return why a scene is not undamped rock with linear joints, None if it is."""
-    damping = scene.damping
-    reasons = [
+def linear_rock(scene: RockMass) -> Answer:
+    """Return whether a scene is undamped rock with linear joints."""
+    damping, meshed = scene.damping, scene.domain.given is not None and bool(scene.joint_sets)
+    return Answer.unless(
         (bool(damping.alpha), "the damping is proportional to mass"),
         (bool(damping.rayleigh and damping.rayleigh.coefficients[1]), "the rock is damped"),
         (scene.rock.quality_factor is not None, "the rock has a quality_factor"),
         (bool(damping.local), "the damping is local and not linear"),
-    ]
-    meshed = scene.domain.given is not None and bool(scene.joint_sets)
-    reasons.append((meshed, "the joints are those of a mesh"))
-    laws = (beyond_linear_law(one) for one in scene.joint_sets)
-    return next((why for there, why in reasons if there), None) or next(filter(None, laws), None)
+        (meshed, "the joints are those of a mesh"),
+        *((not law, law.reason) for law in map(linear_law, scene.joint_sets)),
+    )
 
 
-def beyond_linear_law(one: JointSet) -> str | None:
-    """Return why the law of a joint set is not linear, None if it is."""
-    if one.tension is False:
-        return f"joint set {one.name!r} carries no tension"
-    for part in PARTS:
-        if part.of(one):
-            return f"joint set {one.name!r}: {part.words}"
-    if one.friction_angle is not None or one.cohesion is not None:
-        return f"joint set {one.name!r} can slip"
-    return None
+def linear_law(one: JointSet) -> Answer:
+    """Return whether the law of a joint set is linear."""
+    slips = one.friction_angle is not None or one.cohesion is not None
+    return Answer.unless(
+        (one.tension is False, f"joint set {one.name!r} carries no tension"),
+        *((part.of(one), f"joint set {one.name!r}: {part.words}") for part in PARTS),
+        (slips, f"joint set {one.name!r} can slip"),
+    )
 
 
-def reflecting_side(scene: RockMass, face: Face | None = None) -> str | None:
-    """Return why waves do not leave through all sides but a free face, None if they do: each other
-    side must be quiet, or periodic with waves and joints uniform along the direction to its
-    partner, or rollers beside such P waves."""
+def waves_leave(scene: RockMass, face: Face | None = None) -> Answer:
+    """Return whether waves leave through all sides but a free face: each other side must be quiet,
+    or periodic with waves and joints uniform along the direction to its partner, or rollers beside
+    such P waves."""
     for side, normals in shape_of(scene.domain).normals().items():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
-            return f"the {side} is periodic, and waves or joints vary along it"
+            return Answer(f"the {side} is periodic, and waves or joints vary along it")
         if held == "roller" and not (
             _is_invariant(scene, side) and all(not _moves(one, normals[0]) for one in scene.waves)
         ):
-            return f"the {side} is on rollers, and waves vary along it or move rock into it"
+            return Answer(f"the {side} is on rollers, and waves vary along it or move rock into it")
         is_face = held == "free" and face is not None and (normals @ face.normal).min() > ALONG
         if held in ("free", "fixed") and not is_face:
-            return f"the {side} is {held} and reflects waves"
-    return None
+            return Answer(f"the {side} is {held} and reflects waves")
+    return Answer()
 
 
 def free_face(scene: RockMass) -> Face | None:

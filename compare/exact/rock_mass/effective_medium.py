@@ -31,10 +31,10 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.rock_mass.conditions import (
     Face,
     all_parallel,
-    beyond,
     free_face,
+    holds,
     prestress_of,
-    reflecting_side,
+    waves_leave,
 )
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
@@ -130,21 +130,22 @@ def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> 
 def applies(scene: RockMass) -> Answer:
     """Return whether the scene has waves in an effective medium only."""
     face = None if scene.in_space else free_face(scene)
-    reason = beyond(
+    answer = holds(
         scene,
         ("waves", "prestress"),
         (not scene.joint_sets, "there is no joint"),
         (all_parallel(scene), "joints are parallel: see parallel-joints"),
         (any(one.spacing is None for one in scene.joint_sets), "a joint has no spacing"),
-    ) or reflecting_side(scene, face)
-    if reason is None:
-        corners, waves = np.array(scene.domain.corners), medium_field(scene).waves
-        if face is not None and len(waves) < 3 * len(scene.waves):
-            return Answer("a wave decays from the free face")
-        first = min(one.lateness(corners).min() for one in waves)
-        if first < -1e-9 * scene.time.duration:
-            reason = "a pulse is inside the domain before t = 0"
-    return Answer(reason or "")
+    ) and waves_leave(scene, face)
+    if not answer:
+        return answer
+    corners, waves = np.array(scene.domain.corners), medium_field(scene).waves
+    decays = face is not None and len(waves) < 3 * len(scene.waves)
+    first = min(one.lateness(corners).min() for one in waves)
+    return Answer.unless(
+        (decays, "a wave decays from the free face"),
+        (first < -1e-9 * scene.time.duration, "a pulse is inside the domain before t = 0"),
+    )
 
 
 def solve(scene: RockMass) -> xr.Dataset:

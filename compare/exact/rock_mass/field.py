@@ -40,7 +40,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
 )
 from jointwave.compare.exact.rock_mass.effective_medium import medium_field
 from jointwave.compare.exact.rock_mass.normal_incidence import NormalField
-from jointwave.compare.exact.rock_mass.stack import JointStack, scatters_otherwise, stack_of
+from jointwave.compare.exact.rock_mass.stack import JointStack, scatters, stack_of
 
 
 @dataclass(frozen=True)
@@ -51,14 +51,11 @@ class StackField:
     waves: tuple[PlaneWave, ...]
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
-        stack, places = self.stack, np.asarray(points, dtype=float)
-        dim = places.shape[1]
-        shapes = ((len(places), count, len(times)) for count in (dim, dim * (dim + 1) // 2))
-        total = [np.zeros(shape) for shape in shapes]
-        for wave in self.waves if len(places) else ():
-            from_wave = places - wave.through
-            for met in stack.met_by(wave):
-                found = layer_pulses.motion(wave.pulse.value, met, from_wave, times)
+        m, dim = np.shape(points)
+        total = [np.zeros((m, count, len(times))) for count in (dim, dim * (dim + 1) // 2)]
+        for wave in self.waves if m else ():
+            for met in self.stack.met_by(wave):
+                found = layer_pulses.motion(wave.pulse.value, met, points - wave.through, times)
                 for sum_, part in zip(total, found, strict=True):
                     sum_ += part
         return WaveMotion(*total)
@@ -88,7 +85,7 @@ def _planes_in_space(scene: RockMass) -> RockMass:
     """Return a scene in space if all of its planes are a stack, else without them; raises
     SceneError where joints that are alone, other rock or sides send waves back otherwise."""
     sides, of = SIDES[3][: 6 + (scene.domain.given is not None)], scene.boundaries
-    known, face = scatters_otherwise(scene, leaves=False) is None, free_face(scene)
+    known, face = scatters(scene, leaves=False), free_face(scene)
     normals, shape = normals_of(scene), shape_of(scene.domain)
     if not known or (face is not None and normals and not along(face.normal, normals[0])):
         face = None
@@ -124,8 +121,8 @@ def _planes_in_the_plane(scene: RockMass) -> RockMass:
     layers, sets = strata(scene.regions), _in_layers(scene)
     planes = scene.model_copy(update={"regions": layers, "joint_sets": []})
     if layers:
-        if (reason := scatters_otherwise(planes, leaves=False)) is not None:
-            allowed = f"enter regions in which their field is not known: {reason}"
+        if not (answer := scatters(planes, leaves=False)):
+            allowed = f"enter regions in which their field is not known: {answer.reason}"
             raise SceneError(scene.where, "waves", len(scene.waves), allowed)
         sets = [one for one in sets if along(one.normal, normals_of(planes)[0])]
     face, cuts = free_face(scene), list[JointSet | Region]([*layers, *sets])

@@ -19,7 +19,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.point_force import motion
 from jointwave.compare.exact.plane.waves import PlaneMotion
-from jointwave.compare.exact.rock_mass.conditions import beyond, prestress_of
+from jointwave.compare.exact.rock_mass.conditions import holds, prestress_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
@@ -30,7 +30,7 @@ IN_PLANE = "is for a rock mass in space, not for one in the plane"
 
 def applies(scene: RockMass) -> Answer:
     """Return whether only forces act on rock without joints, and reach a receiver before echoes."""
-    reason = beyond(
+    answer = holds(
         scene,
         ("no waves", "loads", "openings", "prestress"),
         (bool(scene.joint_sets), "there are joints"),
@@ -40,16 +40,16 @@ def applies(scene: RockMass) -> Answer:
         (bool(scene.boundaries.sides("periodic")), "a side is periodic"),
         (not scene.record.points, "no point is recorded"),
     )
-    if reason is None and any(_jumps(one) for one in _histories(scene)):
-        reason = "a force jumps, so that velocities at its arrivals are unbounded"
-    if reason is None:
-        points = np.array(scene.record.points)
-        reach = min(distances(points, one.at).min() for one in scene.loads)
-        if not reach > 0:
-            reason = "a receiver lies on a force"
-        elif known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed):
-            reason = "a side reflects before any receiver is reached"
-    return Answer(reason or "")
+    if not answer:
+        return answer
+    points, jumps = np.array(scene.record.points), any(_jumps(one) for one in _histories(scene))
+    reach = min(distances(points, one.at).min() for one in scene.loads)
+    late = known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed)
+    return Answer.unless(
+        (jumps, "a force jumps, so that velocities at its arrivals are unbounded"),
+        (not reach > 0, "a receiver lies on a force"),
+        (late, "a side reflects before any receiver is reached"),
+    )
 
 
 def solve(scene: RockMass) -> xr.Dataset:

@@ -24,10 +24,10 @@ from jointwave.compare.exact.rock_mass import normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     along,
-    beyond_linear_law,
     free_face,
+    linear_law,
     normals_of,
-    reflecting_side,
+    waves_leave,
 )
 from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
 from jointwave.compare.exact.rock_mass.stack_waves import on_face
@@ -103,8 +103,8 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
     planes = planes_of(scene)
     quiet = {side: "quiet" for side in scene.boundaries.sides("periodic")}
     closed = scene.model_copy(update={"boundaries": scene.boundaries.model_copy(update=quiet)})
-    if reason := reflecting_side(closed, free_face(planes)):
-        yield 1.0, reason
+    if not (answer := waves_leave(closed, free_face(planes))):
+        yield 1.0, answer.reason
     yield _damped(scene), "the rock is damped"
     kept = [one.name for one in planes.joint_sets]
     left = [one for one in scene.joint_sets if one.name not in kept]
@@ -151,7 +151,7 @@ def _damped(scene: RockMass) -> float:
 def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     """Yield for each joint set the motion that the tractions of the field beyond its strength would
     be, over the velocity of the wave, and what it sends back less as it closes."""
-    sets = [one for one in scene.joint_sets if beyond_linear_law(one)]
+    sets = [one for one in scene.joint_sets if not linear_law(one)]
     if not sets:
         return
     field, places = field_of(scene), np.mean(scene.domain.corners, axis=0)[None]

@@ -21,17 +21,18 @@ from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane import parallel_joints
 from jointwave.compare.exact.plane.oblique_joint import Joint
-from jointwave.compare.exact.plane.pulse import PulseStack
+from jointwave.compare.exact.plane.parallel_joints import PulseStack
 from jointwave.compare.exact.plane.waves import ACROSS, slownesses_across
 from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     all_parallel,
     along,
-    beyond_linear_rock,
     free_face,
+    linear_rock,
     normals_of,
-    reflecting_side,
+    waves_leave,
 )
+from jointwave.compare.solvers.record import Answer
 
 BEGUN = 1e-6  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
 FAINT = 1e-12  #: part of an S wave in or across its plane of incidence that counts as none
@@ -119,9 +120,9 @@ def stiffnesses(scene: RockMass) -> np.ndarray:
     return np.array(found).reshape(-1, 2).T
 
 
-def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
-    """Return why the incident waves and the joints do not form the field of a stack, None if they
-    do; other loads and openings add to it. leaves : whether waves must leave through the sides."""
+def scatters(scene: RockMass, leaves: bool = True) -> Answer:
+    """Return whether the incident waves and the joints form the field of a stack; other loads and
+    openings add to it. leaves : whether waves must leave through the sides."""
     normals, face = normals_of(scene), free_face(scene)
     if normals and face is not None and not along(face.normal, normals[0]):
         face = None
@@ -138,12 +139,11 @@ def scatters_otherwise(scene: RockMass, leaves: bool = True) -> str | None:
         reasons.append((runs_along, f"waves[{i}] travels along the joints"))
         decays = bool(scene.regions and normals) and _decays(scene, wave)
         reasons.append((decays, f"waves[{i}] has an evanescent wave in a region"))
-    found = beyond_linear_rock(scene) if leaves else None
-    found = found or next((why for there, why in reasons if there), None)
-    found = found or (reflecting_side(scene, face) if leaves else None)
-    if found is None and leaves and len(shape_of(scene.domain).solids) > len(scene.domain.holes):
-        found = "the domain is not convex"
-    return found
+    if not leaves:
+        return Answer.unless(*reasons)
+    convex = len(shape_of(scene.domain).solids) <= len(scene.domain.holes)
+    answer = linear_rock(scene) and Answer.unless(*reasons) and waves_leave(scene, face)
+    return answer and Answer.unless((not convex, "the domain is not convex"))
 
 
 def _decays(scene: RockMass, wave: Wave) -> bool:
@@ -154,19 +154,19 @@ def _decays(scene: RockMass, wave: Wave) -> bool:
     return any(slowness * elastic_rock(one).p_speed >= 1 for one in rocks_of(scene))
 
 
-def begun(scene: RockMass, stack: JointStack) -> str | None:
-    """Return which pulse has met a joint of the domain before the start, None if none has."""
+def begins_before(scene: RockMass, stack: JointStack) -> Answer:
+    """Return whether no pulse has met a joint of the domain before the start, or which one has."""
     for i, wave in enumerate(scene.waves):
         incident = plane_wave(scene, wave)
         late = first_scattered(stack, incident)
         if late < -BEGUN * scene.time.duration:
             place = incident.through + late * incident.speed * incident.direction
             where = ", ".join(f"{x:.6g}" for x in place)
-            return (
+            return Answer(
                 f"waves[{i}] reaches a joint before t = 0: move it back, to "
                 f"waves[{i}].through = [{where}] or further"
             )
-    return None
+    return Answer()
 
 
 def first_scattered(stack: JointStack, wave: PlaneWave) -> float:

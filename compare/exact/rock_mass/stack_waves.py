@@ -26,13 +26,13 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.layer_pulses import Fields, fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
+from jointwave.compare.exact.rock_mass import conditions
 from jointwave.compare.exact.rock_mass.conditions import (
     PARALLEL,
-    beyond,
     normals_of,
     prestress_of,
 )
-from jointwave.compare.exact.rock_mass.stack import JointStack, begun, scatters_otherwise, stack_of
+from jointwave.compare.exact.rock_mass.stack import JointStack, begins_before, scatters, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
@@ -54,19 +54,18 @@ Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 def holds(scene: RockMass, one: bool) -> Answer:
     """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
     held = ("waves", "prestress", "regions", "damped joints")
-    if reason := beyond(scene, held) or scatters_otherwise(scene):
-        return Answer(reason)
+    answer = conditions.holds(scene, held) and scatters(scene)
+    if not answer:
+        return answer
     stack = stack_of(scene)
-    count = len(stack.joints) - stack.has_face
-    if one and scene.regions:
-        return Answer("regions differ in rock: see parallel-joints")
-    if one and stack.has_face:
-        return Answer("a side is free: see parallel-joints")
-    if one and count != 1:
-        return Answer(f"there are {count} joints: see parallel-joints")
-    if not one and count == 1 and not scene.regions and not stack.has_face:
-        return Answer("there is one joint")
-    return Answer(begun(scene, stack) or "")
+    count, layered = len(stack.joints) - stack.has_face, bool(scene.regions)
+    alone = count == 1 and not layered and not stack.has_face
+    return Answer.unless(
+        (one and layered, "regions differ in rock: see parallel-joints"),
+        (one and stack.has_face, "a side is free: see parallel-joints"),
+        (one and count != 1, f"there are {count} joints: see parallel-joints"),
+        (not one and alone, "there is one joint"),
+    ) and begins_before(scene, stack)
 
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
