@@ -19,18 +19,12 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from jointwave.cases.histories import LoadHistory, Recorded, Step
-from jointwave.cases.loads import load_history
-from jointwave.cases.sampling import sample_times
-from jointwave.cases.schema.scene import Scene
 from jointwave.cases.size import require
 from jointwave.compare.exact.bar.images import Front
 from jointwave.compare.exact.bar.transfer import Bar, End, nodes_of, transfer
-from jointwave.compare.exact.conditions import static_stress
 from jointwave.compare.exact.inversion import Window, taper, window_of
-from jointwave.results.dataset import dataset
 
 TAIL = 1.5
 WRAPPED = 1e-10
@@ -43,17 +37,6 @@ MOST_TRIPS = 5000  # of the part in front of the first joint, to and fro
 SAFETY = 2.0  # factor on the difference of the two inversions
 NEAR = 17  # fine steps within which its maximum is taken
 FLOOR = 4e-9  # of a quantity's peak: the window's wrapping and the round-off that it amplifies
-
-
-def solved(scene: Scene, name: str, bar: Bar) -> xr.Dataset:
-    """Return stress, velocity and displacement of a bar under the scene's load."""
-    times, record = sample_times(scene), scene.record
-    places = record.stress, record.velocity
-    found, bounds = bounded(bar, load_history(scene), times, *places, scene.load.time_scale)
-    found[0] = found[0] + static_stress(scene)
-    names = "stress", "velocity", "displacement"
-    waves, errors = (dict(zip(names, of, strict=True)) for of in (found, bounds))
-    return dataset(scene, name, times, waves, errors=errors)
 
 
 def bounded(

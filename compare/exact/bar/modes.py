@@ -64,9 +64,10 @@ def applies_damped(scene: Scene) -> Answer:
 
 
 def _under_a_sine(scene: Scene) -> Answer:
-    if (scene.ends.start, scene.ends.end) != ("free", "free"):
-        return Answer("an end is not free")
-    return Answer("" if scene.load.shape == "sine" else "the load is not a sine")
+    return Answer.unless(
+        ({scene.ends.start, scene.ends.end} != {"free"}, "an end is not free"),
+        (scene.load.shape != "sine", "the load is not a sine"),
+    )
 
 
 def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:

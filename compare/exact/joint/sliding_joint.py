@@ -14,7 +14,7 @@ Valid for blocks that do not rotate, a load across the axis, absorbing ends, one
 or with friction under the prestress, and all else elastic and undamped.
 """
 
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -117,23 +117,25 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
 def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     """Return the only joint that can slip; its strength is Mohr-Coulomb's under the prestress."""
     j, normal = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
-    cohesion = 0.0 if p.cohesion is None else float(p.cohesion[j])
-    friction = 0.0 if p.friction is None else float(p.friction[j])
+
+    def own(every: np.ndarray | None, without: float) -> float:
+        return without if every is None else float(every[j])
+
+    cohesion, friction = own(p.cohesion, 0.0), own(p.friction, 0.0)
     strength = max(cohesion + friction * normal, 0.0)
+    lost = max(cohesion - own(p.residual_cohesion, cohesion), 0.0)
     found = SlipJoint(float(p.joint_y[j]), float(p.excess_shear_compliance[j]), strength)
-    left = cohesion if p.residual_cohesion is None else float(p.residual_cohesion[j])
-    lost = max(cohesion - left, 0.0)
     found = found._replace(friction=friction, dynamic_friction=friction, lost=lost)
     if normal <= 0:
         return found
-    if p.dilation is not None and p.dilation_distance is not None:
-        dilation, distance = float(p.dilation[j]), float(p.dilation_distance[j])
-        found = found._replace(dynamic=strength, dilation=dilation, dilation_distance=distance)
-    if p.weakening_distance is None or p.dynamic_friction is None:
-        return found
-    left, distance = float(p.dynamic_friction[j]), float(p.weakening_distance[j])
-    dynamic = cohesion + left * normal
-    return found._replace(dynamic=dynamic, distance=distance, dynamic_friction=left)
+    left = own(p.dynamic_friction, friction)
+    return found._replace(
+        dynamic=cohesion + left * normal,
+        dynamic_friction=left,
+        distance=own(p.weakening_distance, inf),
+        dilation=own(p.dilation, 0.0),
+        dilation_distance=own(p.dilation_distance, inf),
+    )
 
 
 def _slips(p: Properties) -> np.ndarray:

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.histories import Integrated
-from jointwave.cases.incident import PlaneWave, PlaneWaves, across, in_components
+from jointwave.cases.incident import COMPONENT, PlaneWave, PlaneWaves, across, in_components
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from jointwave.cases.material.rock import elastic_rock
@@ -114,15 +114,13 @@ def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> 
         stress = -np.einsum("ijkl,k,l->ij", c, g, s)
         if (stress @ m) @ g > 0:  # energy flows inwards
             found.append((s, g, stress))
-    xx, yy, xy = wave.stress
-    pulled = np.array([[xx, xy], [xy, yy]]) @ m
+    pulled = wave.stress[COMPONENT[2]] @ m
     share = np.linalg.lstsq(np.array([s @ m for *_, s in found]).T, -pulled, rcond=None)[0]
     at = wave.through + (face.offset - wave.through @ m) * m  # and the pulse begins there
     late, back = wave.lateness(at[None])[0], []
     for (s, g, stress), r in zip(found, share, strict=True):
         speed = float(1 / np.hypot(*s))
-        own = r * stress[[0, 1, 0], [0, 1, 1]]
-        through = at - late * speed * speed * s
+        through, own = at - late * speed * speed * s, in_components(r * stress)
         back.append(MediumWave(wave.rock, speed * s, r * g, speed, through, wave.pulse, own))
     return back
 

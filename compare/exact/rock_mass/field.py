@@ -110,14 +110,14 @@ def _planes_in_space(scene: RockMass) -> RockMass:
 
 def planes_of(scene: RockMass) -> RockMass:
     """Return a scene with those of its joints, boundaries of regions and free face alone that are a
-    stack of parallel planes; raises SceneError where the waves between the others are not known."""
-    return _planes_in_space(scene) if scene.in_space else _planes_in_the_plane(scene)
+    stack of parallel planes; raises SceneError where the waves between the others are not known.
 
-
-def _planes_in_the_plane(scene: RockMass) -> RockMass:
-    """The same in the plane: of joints that cross layers, or are not parallel, none, nor those that
-    periodic sides repeat; of a free face that is not parallel to layers none, else no joint that is
-    not parallel to it."""
+    In the plane, of joints that cross layers, or are not parallel, none, nor those that periodic
+    sides repeat; of a free face that is not parallel to layers none, else no joint that is not
+    parallel to it.
+    """
+    if scene.in_space:
+        return _planes_in_space(scene)
     layers, sets = strata(scene.regions), _in_layers(scene)
     planes = scene.model_copy(update={"regions": layers, "joint_sets": []})
     if layers:

@@ -51,17 +51,16 @@ def applies(scene: RockMass) -> Answer:
     answer = stack_waves.holds(scene.model_copy(update={"joint_sets": linear}), one=True)
     if not answer:
         return answer
-    if any(one.damping_ratio for one in sets):
-        return Answer("the joint is damped")
     normal = stack_of(scene).normal
-    if not all(along(np.array(one.direction), normal) for one in scene.waves):
-        return Answer("a wave is not one at normal incidence")
-    if len(waves) < len(scene.waves):
-        return Answer("several waves are of one kind")
+    oblique = not all(along(np.array(one.direction), normal) for one in scene.waves)
     ways = {np.sign(normal @ one.direction) for one in scene.waves}
-    if len(ways) > 1:
-        return Answer("waves meet the joint from both sides")
-    return _slips_as_known(scene, sets[0]) if "S" in waves else answer
+    answer = Answer.unless(
+        (any(one.damping_ratio for one in sets), "the joint is damped"),
+        (oblique, "a wave is not one at normal incidence"),
+        (len(waves) < len(scene.waves), "several waves are of one kind"),
+        (len(ways) > 1, "waves meet the joint from both sides"),
+    )
+    return answer and _slips_as_known(scene, sets[0]) if "S" in waves else answer
 
 
 def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:
@@ -80,12 +79,12 @@ def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:
     if least < 0 or (least == 0 and one.tension is False):
         return Answer("no normal stress closes the joint at all times")
     joint = slip_joint(one, normal, shear)
-    if joint.left(0.0) <= abs(shear) and shear:
-        return Answer("the prestress exceeds the joint's strength")
     most = joint.fall + joint.friction_fall * (normal - least)
-    if most * joint.compliance >= 1:
-        return Answer("friction falls with slip faster than the joint unloads")
-    return Answer()
+    snaps = most * joint.compliance >= 1
+    return Answer.unless(
+        (joint.left(0.0) <= abs(shear) and shear, "the prestress exceeds the joint's strength"),
+        (snaps, "friction falls with slip faster than the joint unloads"),
+    )
 
 
 def carried(scene: RockMass, wave: PlaneWave) -> tuple[float, float, float]:

@@ -43,7 +43,7 @@ def applies(scene: RockMass) -> Answer:
     if not answer:
         return answer
     points, jumps = np.array(scene.record.points), any(_jumps(one) for one in _histories(scene))
-    reach = min(distances(points, one.at).min() for one in scene.loads)
+    reach = min(np.linalg.norm(points - one.at, axis=1).min() for one in scene.loads)
     late = known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed)
     return Answer.unless(
         (jumps, "a force jumps, so that velocities at its arrivals are unbounded"),
@@ -81,13 +81,8 @@ def known_until(scene: RockMass) -> float:
         for load in scene.loads:
             at = np.array(load.at)
             image = at + 2 * ((corners[0] - at) @ normal) * normal
-            first = min(first, distances(points, image).min())
+            first = min(first, np.linalg.norm(points - image, axis=1).min())
     return float(first / elastic_rock(scene.rock).p_speed)
-
-
-def distances(points: np.ndarray, place: Any) -> np.ndarray:
-    """Return the distances of points [m, d] from a place [d], m."""
-    return np.linalg.norm(points - np.array(place), axis=1)
 
 
 def _histories(scene: RockMass) -> list[LoadHistory]:
