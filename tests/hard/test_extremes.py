@@ -60,7 +60,7 @@ def test_linear_results_scale_with_the_load(amplitude, engine, scheme):
     """Over the amplitude, the result is that of 1 Pa. Only the factor rounds, at the load and at
     the result, by an eps each; every step keeps its relative error, which a sum over steps
     multiplies by at most their number."""
-    run = HardRun(engine, scheme, {"record.energy": False})
+    run = HardRun(engine, scheme)
     one, scaled = (run.run(load__amplitude=a) for a in (1.0, amplitude))
     for name in ("stress", "velocity"):
         found = relative_l2(scaled[name].values / amplitude, one[name].values)
