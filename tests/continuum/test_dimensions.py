@@ -51,7 +51,7 @@ JOINTS = {
     },
 }
 #: In which each is held against the bar: a kernel of its own in each.
-DIMENSIONS = [(2, 3), (3,), (2,)]
+DIMENSIONS = [(3,), (3,), (2,)]
 
 
 @pytest.fixture
