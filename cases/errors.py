@@ -22,12 +22,7 @@ class SceneError(ValueError):
     """
 
     def __init__(
-        self,
-        where: str,
-        key: str,
-        value: object,
-        allowed: str,
-        others: "Sequence[SceneError]" = (),
+        self, where: str, key: str, value: object, allowed: str, others: "Sequence[SceneError]" = ()
     ) -> None:
         self.where, self.key, self.value, self.allowed = str(where), key, value, allowed
         self._arguments = (where, key, value, allowed, others)

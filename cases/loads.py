@@ -11,14 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.cases.histories import (
-    Integrated,
-    LoadHistory,
-    Recorded,
-    Step,
-    periodic,
-    triangle,
-)
+from jointwave.cases.histories import Integrated, LoadHistory, Recorded, Step, periodic, triangle
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import Interpolation
 from jointwave.cases.scene_type import AnyScene

@@ -34,12 +34,7 @@ INTERVAL = 1.0e-4  # s
 tables = {
     "title": "A soft joint, heard behind it",
     "pillar": {"length": 20.0, "side": 0.5, "block": 0.5},
-    "rock": {
-        "density": 2400.0,
-        "p_speed": 2200.0,
-        "s_speed": 800.0,
-        "intact_modulus": 8.64e10,
-    },
+    "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10},
     "load": {
         "shape": "ricker",
         "amplitude": 5.0e5,  # Pa

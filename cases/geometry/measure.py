@@ -137,11 +137,7 @@ def outline_moments(pieces: Outlines) -> Moments:
 
 
 def outlines(
-    body: Complex,
-    facets: np.ndarray,
-    group: np.ndarray,
-    normal: np.ndarray,
-    tolerance: float,
+    body: Complex, facets: np.ndarray, group: np.ndarray, normal: np.ndarray, tolerance: float
 ) -> Outlines:
     """Return the outlines of groups of facets, each in one plane and together convex.
 

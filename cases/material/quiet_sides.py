@@ -11,12 +11,7 @@ import numpy as np
 
 from jointwave.cases.geometry.measure import along_and_across
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.material.effective_medium import (
-    compliant,
-    impedance,
-    stiffness,
-    with_joints,
-)
+from jointwave.cases.material.effective_medium import compliant, impedance, stiffness, with_joints
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.material.rock_mass import initial_stress

@@ -14,11 +14,7 @@ from jointwave.results.dataset import TERMS, dataset
 
 
 def recorded(
-    scene: AnyScene,
-    problem: Problem,
-    samples: Samples,
-    times: np.ndarray,
-    about: Mapping[str, Any],
+    scene: AnyScene, problem: Problem, samples: Samples, times: np.ndarray, about: Mapping[str, Any]
 ) -> xr.Dataset:
     """Return the samples at these times, the first ones, as a result with attributes."""
     samples = Samples(*(one[:, : len(times)] for one in samples))

@@ -10,14 +10,7 @@ from scipy.sparse import csr_matrix
 from ufl.algorithms.analysis import has_type
 
 from jointwave.cases.geometry.relations import joined
-from jointwave.continuum.mesh.conforming import (
-    SIMPLEX,
-    Conforming,
-    Marks,
-    Places,
-    cut_open,
-    shared,
-)
+from jointwave.continuum.mesh.conforming import SIMPLEX, Conforming, Marks, Places, cut_open, shared
 from jointwave.continuum.mesh.periodic import Facing
 from jointwave.continuum.space.bubbles import bubble_element
 from jointwave.continuum.space.compat import (

@@ -11,15 +11,7 @@ import numpy as np
 from jointwave.dem.contacts.chunks import LANES, marks
 from jointwave.dem.kernel.loop import loop_for
 from jointwave.dem.kernel.model import Model, Samples, State
-from jointwave.dem.kernel.parts import (
-    Part,
-    add_up,
-    divided,
-    flat,
-    part_of,
-    take_together,
-    work_for,
-)
+from jointwave.dem.kernel.parts import Part, add_up, divided, flat, part_of, take_together, work_for
 from jointwave.dem.kernel.rotation import free_motion
 from jointwave.dem.sides.shaking import motion_of_walls
 

@@ -150,9 +150,7 @@ class KernelFlags(NamedTuple):
         """
         rates = self.motions * self.parts.dashpots
         return rows(
-            rate=rates,
-            drag=rates * self.ledger,
-            jump=self.motions * (self.finite and self.rated),
+            rate=rates, drag=rates * self.ledger, jump=self.motions * (self.finite and self.rated)
         )
 
     @property

@@ -162,11 +162,7 @@ def _stencil(
 
 
 def read_by(
-    blocks: Blocks,
-    faces: Contacts,
-    onto: np.ndarray,
-    points: list[Stencil],
-    joints: list[Stencil],
+    blocks: Blocks, faces: Contacts, onto: np.ndarray, points: list[Stencil], joints: list[Stencil]
 ) -> Receivers:
     """Return receivers by their stencils, of blocks at points and of contacts at joints.
 

@@ -109,8 +109,7 @@ def test_facets_of_one_group_follow_one_law(given):
 
 
 @pytest.mark.parametrize(
-    ("kind", "swap"),
-    [("tetrahedron", [0, 2, 1, 3]), ("hexahedron", [0, 3, 2, 1, 4, 7, 6, 5])],
+    ("kind", "swap"), [("tetrahedron", [0, 2, 1, 3]), ("hexahedron", [0, 3, 2, 1, 4, 7, 6, 5])]
 )
 def test_a_mirrored_file_is_turned(kind, swap, tmp_path, column):
     """Cells drawn the other way round have negative Jacobians in the file."""

@@ -124,11 +124,7 @@ def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):
     [
         (None, SCENE.replace("Fault", "other"), "'joint fault', but no joint set has this name"),
         (None, CROSS, r"must have a group 'joint cross' for joint_sets\[1\]"),
-        (
-            {"joint fault": [(0.0, 0.0), (SIZE, 0.0)]},
-            SCENE,
-            "between no two blocks, the first",
-        ),
+        ({"joint fault": [(0.0, 0.0), (SIZE, 0.0)]}, SCENE, "between no two blocks, the first"),
         (None, SCENE.replace("dip = 30.0", "dip = 30.0\nthrough = [1.0, 1.0]"), "has no effect"),
         (None, SCENE.replace("rock.msh", "lost.msh"), "domain.mesh = 'lost.msh': cannot be read"),
         (None, SCENE.replace("5.0, 8.0]", "5.0, 18.0]"), r"record.points\[1\]"),

@@ -17,13 +17,7 @@ from jointwave.cases.schema.domain import Domain
 from jointwave.dem.contacts.chunks import chunks_of
 from jointwave.dem.contacts.faces import Contacts
 from jointwave.dem.kernel.leapfrog import march
-from jointwave.dem.kernel.model import (
-    Blocks,
-    KernelFlags,
-    Model,
-    samples_for,
-    state_at_rest,
-)
+from jointwave.dem.kernel.model import Blocks, KernelFlags, Model, samples_for, state_at_rest
 from jointwave.joints.law import law, parts_of, table_of
 
 SIDE, DENSITY, NORMAL, SHEAR = 2.0, 2500.0, 3e9, 1.1e9

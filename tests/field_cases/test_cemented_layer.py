@@ -19,12 +19,7 @@ def torn(law, layer):
     return {
         "title": "Torn off",
         "pillar": {"length": 3.0, "side": 0.5, "block": 1.0},
-        "rock": {
-            "density": 2500.0,
-            "p_speed": 2600.0,
-            "s_speed": 1500.0,
-            "intact_modulus": 5e10,
-        },
+        "rock": {"density": 2500.0, "p_speed": 2600.0, "s_speed": 1500.0, "intact_modulus": 5e10},
         "joints": law | {"damping_ratio": 0.5},
         "soft_layers": [layer],
         "load": {"shape": "step", "amplitude": -PULL},

@@ -6,17 +6,7 @@ import numpy as np
 import pytest
 
 from closed_forms.modes import modes, of_modes
-from hard_runs import (
-    BLOCKS,
-    EPS,
-    JOINT,
-    JOINTED,
-    REFEREE,
-    ROUND_OFF,
-    SCHEMES,
-    HardRun,
-    marked,
-)
+from hard_runs import BLOCKS, EPS, JOINT, JOINTED, REFEREE, ROUND_OFF, SCHEMES, HardRun, marked
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.sampling import interpolation
 from jointwave.compare.exact.bar import bars

@@ -9,14 +9,7 @@ import numpy as np
 import pytest
 
 from jointwave.joints.formula import formula
-from jointwave.joints.law import (
-    History,
-    Law,
-    law_of,
-    parts_of,
-    table_of,
-    traction,
-)
+from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
 from jointwave.joints.tangent import tangent
 
 N, DT, HISTORY = 64, 1e-5, History()

@@ -39,8 +39,7 @@ def test_snapshots_come_back_from_a_result_and_from_its_file(stress, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("fields", "every"),
-    [(None, None), (5e-5, 1), (1e-4, 2), (1.2e-4, 2), (1.3e-4, 3), (7e-3, 140)],
+    ("fields", "every"), [(None, None), (5e-5, 1), (1e-4, 2), (1.2e-4, 2), (1.3e-4, 3), (7e-3, 140)]
 )
 def test_time_between_snapshots_is_a_whole_number_of_samples(scene_with, fields, every):
     """The last of 120 ms is no later than the last sample."""

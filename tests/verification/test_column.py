@@ -23,11 +23,7 @@ def rock(pillar):
     def body(length, poisson, dim, along=4, across=1):
         scene = pillar(
             pillar={"length": length, "side": SIDE, "block": length / along},
-            rock={
-                "density": DENSITY,
-                "equivalent_modulus": MODULUS,
-                "equivalent_poisson": poisson,
-            },
+            rock={"density": DENSITY, "equivalent_modulus": MODULUS, "equivalent_poisson": poisson},
             load={"shape": "step", "amplitude": 0.0},
             record={"stress": [], "velocity": [0.0], "interval": 1e-4},
             numerics__continuum__order=4,

@@ -59,10 +59,7 @@ def fault(half, duration, size=1.0):
             {"name": "patch", "dip": 90.0, "through": [50.0 + half, 0.0]},
             {"name": "left", "dip": 90.0, "through": [50.0 - half, 0.0]},
         ],
-        "joint_sets": [
-            FAULT | old | {"initial_state": AGE},
-            FAULT | new | {"initial_state": 1e-6},
-        ],
+        "joint_sets": [FAULT | old | {"initial_state": AGE}, FAULT | new | {"initial_state": 1e-6}],
         "prestress": {"xx": PRESSURE, "yy": PRESSURE, "xy": SHARE * PRESSURE},
         "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
         "time": {"duration": duration},

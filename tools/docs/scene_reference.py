@@ -6,14 +6,7 @@ from typing import Any, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from jointwave.cases.schema.keys import (
-    SOLVERS,
-    TableOf,
-    field_comments,
-    in_words,
-    model_in,
-    tables,
-)
+from jointwave.cases.schema.keys import SOLVERS, TableOf, field_comments, in_words, model_in, tables
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import names
 

@@ -75,11 +75,7 @@ def fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarra
 
 
 def motion(
-    pulse: Pulse,
-    stack: PulseStack,
-    points: np.ndarray,
-    times: np.ndarray,
-    how: Accuracy = QUICK,
+    pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray, how: Accuracy = QUICK
 ) -> WaveMotion:
     """Return the motion at points and times.
 

@@ -27,11 +27,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane.layer_pulses import Fields, fields
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import conditions
-from jointwave.compare.exact.rock_mass.conditions import (
-    PARALLEL,
-    normals_of,
-    prestress_of,
-)
+from jointwave.compare.exact.rock_mass.conditions import PARALLEL, normals_of, prestress_of
 from jointwave.compare.exact.rock_mass.stack import JointStack, begins_before, scatters, stack_of
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.dataset import dataset

@@ -9,12 +9,7 @@ from scipy.linalg import block_diag, eigh
 
 from closed_forms.block_lattice import Lattice, modes
 from jointwave.cases.errors import SceneError
-from jointwave.cases.material.effective_medium import (
-    JointSet,
-    added,
-    intact,
-    nearest_stiffness,
-)
+from jointwave.cases.material.effective_medium import JointSet, added, intact, nearest_stiffness
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import ElasticRock
 from jointwave.cases.partition.lattice import further_sets

@@ -118,9 +118,6 @@ def test_strict_refuses_what_is_warned_of(jointwave, command):
 def test_strict_refuses_a_sweep_and_a_page(jointwave):
     """The page takes only files."""
     Path("new.toml").write_text(starter("new.toml").replace("2400.0", "2.4"))
-    for options in (
-        ("run", SCENE, "--sweep", "load.period=0.01,0.001"),
-        ("report", "new.toml"),
-    ):
+    for options in (("run", SCENE, "--sweep", "load.period=0.01,0.001"), ("report", "new.toml")):
         assert "--strict" in jointwave(*options, "--strict", "--out", "out", code=2).err
         assert not Path("out").exists()

@@ -151,8 +151,7 @@ def test_uneven_samples_count_by_the_time_they_stand_for():
 
 
 @pytest.mark.parametrize(
-    ("offset", "still", "count"),
-    [(7e-7, 0.0, None), (1000.0, 0.0, None), (-3.3333e-3, 5e7, 150)],
+    ("offset", "still", "count"), [(7e-7, 0.0, None), (1000.0, 0.0, None), (-3.3333e-3, 5e7, 150)]
 )
 def test_moved_clock_is_found_to_a_tenth_of_an_interval(offset, still, count, scene, tmp_path):
     """Whatever fraction of a sample it is off, for few and uneven samples too, and for any static

@@ -3,13 +3,7 @@
 import pytest
 
 from jointwave.compare.engines import ENGINES
-from jointwave.compare.misfit.ranking import (
-    applicable,
-    deciding,
-    finest,
-    own_exact,
-    reference_of,
-)
+from jointwave.compare.misfit.ranking import applicable, deciding, finest, own_exact, reference_of
 
 LAYER = {"y": 20.0, "spacing_stiffness": 4.375e8, "thickness": 0.05}
 ROCK = {"dem": "continuum-jointed", "continuum-jointed": None}

@@ -7,11 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from jointwave.compare.misfit.differences import (
-    distance_of,
-    peak_differences,
-    static_difference,
-)
+from jointwave.compare.misfit.differences import distance_of, peak_differences, static_difference
 from jointwave.compare.misfit.metrics import pairings, worst
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.misfit.weight import weigh

@@ -10,13 +10,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.compare.figures.export import Drawn
 from jointwave.compare.report.claims import Claim
 from jointwave.compare.report.report import build, render
-from jointwave.compare.report.scenes import (
-    PAPER,
-    ROCK_MASSES,
-    SceneRequest,
-    SolvedScene,
-    asked_for,
-)
+from jointwave.compare.report.scenes import PAPER, ROCK_MASSES, SceneRequest, SolvedScene, asked_for
 from jointwave.compare.report.sections import section
 from jointwave.compare.studies.experiment import Summary
 

@@ -18,12 +18,7 @@ from jointwave.compare.misfit.external import read_curves
 from jointwave.compare.misfit.metrics import Worst
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.report.scenes import SolvedScene, lead
-from jointwave.compare.report.verdict import (
-    NOT_CHECKED,
-    EngineScore,
-    VariantScore,
-    engine_scores,
-)
+from jointwave.compare.report.verdict import NOT_CHECKED, EngineScore, VariantScore, engine_scores
 from jointwave.compare.text import in_seconds
 
 WAVE = np.sin(np.linspace(0, 9, 200))

@@ -21,13 +21,7 @@ TABLES = {
     "time": {"duration": 0.01},
     "record": {"points": [[4.3, 2.1], [8.2, 7.7]], "joints": [[6.1, 5.0]], "interval": 1e-4},
 }
-WAVE = {
-    "kind": "P",
-    "direction": [0.0, 1.0],
-    "shape": "ricker",
-    "amplitude": 1e6,
-    "period": 0.004,
-}
+WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 
 
 @pytest.fixture(scope="session")

@@ -56,10 +56,7 @@ def chain(pillar, **changes):
 FAILS = {"tensile_strength": 2e5, "fracture_energy": 1.0, "damping_ratio": 0.02}
 
 
-@pytest.mark.parametrize(
-    ("end", "joint"),
-    [("quiet", {}), ("fixed", {}), ("free", FAILS)],
-)
+@pytest.mark.parametrize(("end", "joint"), [("quiet", {}), ("fixed", {}), ("free", FAILS)])
 def test_a_column_is_the_chain(end, joint, rock_mass, pillar):
     """Joints of 1e11 Pa/m in rock of 5e10 Pa, 0.5 m apart: K' = 5e10 Pa/m, E_eq = 2.5e10 Pa. At
     the wall of a fixed side is half a block of rock, without a joint. Both take five steps between

@@ -15,13 +15,7 @@ JOINT = {
     "normal_stiffness": 1e10,
     "shear_stiffness": 4e9,
 }
-WAVE = {
-    "kind": "P",
-    "direction": [0.0, 1.0],
-    "shape": "ricker",
-    "amplitude": 1e6,
-    "period": 0.005,
-}
+WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 1e6, "period": 0.005}
 TABLES = {
     "title": "waves at joints",
     "domain": {"size": [40.0, 30.0]},

@@ -104,11 +104,7 @@ def test_space_turned_about_the_normal_is_the_plane(straight, rock_mass, joint, 
     """A wave that goes up through a horizontal joint, and moves rock along (0.6, 0.8): what the
     plane has along x, with friction that weakens."""
     law = SLIPS | {"dynamic_friction_angle": 20.0, "weakening_distance": 1e-3, "dip": 0.0}
-    flat = rock_mass(
-        joint_sets=[joint(**law)],
-        waves=[wave(kind="S")],
-        prestress=PRESSED,
-    )
+    flat = rock_mass(joint_sets=[joint(**law)], waves=[wave(kind="S")], prestress=PRESSED)
     space = rock_mass(
         domain={"size": [40.0, 40.0, 30.0]},
         joint_sets=[joint(**law | {"through": [20.0, 20.0, 15.0]})],

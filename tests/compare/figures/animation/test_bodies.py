@@ -7,12 +7,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from jointwave.compare.figures.animation.bodies import FRONT, OBLIQUE, Body, BodyView, body_of
-from jointwave.compare.figures.animation.snapshots import (
-    PRINCIPAL,
-    STRESS,
-    VELOCITY,
-    ViewSettings,
-)
+from jointwave.compare.figures.animation.snapshots import PRINCIPAL, STRESS, VELOCITY, ViewSettings
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import RC
 

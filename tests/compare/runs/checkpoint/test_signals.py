@@ -30,10 +30,7 @@ def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
     ended, (line,) = stopped(arguments("axial", out, *EVERY), out, signal.SIGINT)
     assert ended == 130 and "interrupted at t = 0." in line and "--resume" in line
     assert str(out / "dem.stopped.nc") in line and not (out / "dem.nc").exists()
-    with (
-        xr.open_dataset(out / "dem.stopped.nc") as part,
-        xr.open_dataset(undisturbed) as all_of_it,
-    ):
+    with xr.open_dataset(out / "dem.stopped.nc") as part, xr.open_dataset(undisturbed) as all_of_it:
         count, shots = part.sizes["time"], part.sizes["field_time"]
         assert 1 < count < all_of_it.sizes["time"] and shots > 1
         until_then = {"time": slice(count), "field_time": slice(shots)}
