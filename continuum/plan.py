@@ -64,9 +64,10 @@ def plan_of(
     """Return the run of a scene; arguments and errors as of `continuum.run.simulate`."""
     refuse(scene, model, dim)
     found = body_of(scene, model, rock, dim)
-    cells = compat.cell_corners(found.body.mesh), *map(found.of_cells, ("stiffness", "density"))
-    for line in of_coarse_cells(scene, found.scripted, *cells):
-        log.warning(line)
+    if found.scripted or scene.mesh_path is not None:
+        cells = compat.cell_corners(found.body.mesh), *map(found.of_cells, ("stiffness", "density"))
+        for line in of_coarse_cells(scene, found.scripted, *cells):
+            log.warning(line)
     refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
     implicit = scene.numerics.continuum.scheme == "implicit"

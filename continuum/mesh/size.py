@@ -93,7 +93,7 @@ def of_coarse_cells(
     [cells, n, n], Pa, and [cells], kg/m3.
     """
     frequency = highest_frequency(scene)
-    if frequency is None or not (scripted or scene.mesh_path is not None):
+    if frequency is None:
         return
     size, axis = np.ptp(corners, axis=1), corners.shape[2] // 2
     if scene.is_column:
