@@ -55,16 +55,24 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
 def stress_in_reach(scene: AnyScene) -> float:
     """Return the normal stress (Pa) for which the critical step accounts in joint closure.
 
-    The initial stress, that of a sudden weight doubled, plus twice the peaks of all loads and
-    waves, as at a rigid wall. Focusing waves can exceed it: it is not a strict bound.
+    The initial stress, plus twice what is added, as at a rigid wall, or in rock with openings three
+    times, as at the wall of a circular one (Kirsch). Focusing waves can exceed it: it is not a
+    strict bound.
     """
-    stress = 0.0 if scene.prestress is None else scene.prestress.largest(scene.excavated)
-    if scene.gravity is not None:
-        density = max(scene.rock.density, *(one.density or 0.0 for one in scene.regions), 0.0)
-        weight = density * scene.gravity.acceleration * scene.reach
-        stress = stress + (1 if scene.gravity.static else 2) * weight
-    pulses = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
-    return stress + 2 * pulses
+    (initial, added), opened = stresses(scene), not scene.is_column and scene.domain.holes
+    return initial + (3 if opened else 2) * added
+
+
+def stresses(scene: AnyScene) -> tuple[float, float]:
+    """Return the largest initial stress, Pa, and the peaks of all loads and waves, and a sudden
+    weight, together."""
+    initial = 0.0 if scene.prestress is None else scene.prestress.largest(scene.excavated)
+    added = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
+    if scene.gravity is None:
+        return initial, added
+    density = max(scene.rock.density, *(one.density or 0.0 for one in scene.regions), 0.0)
+    weight = density * scene.gravity.acceleration * scene.reach
+    return (initial + weight, added) if scene.gravity.static else (initial, added + weight)
 
 
 def _peak(pulse: Pulse, duration: float) -> float:

@@ -61,13 +61,19 @@ def compliant(sets: Iterable[schema.JointSet], stress: np.ndarray | None = None)
     found = []
     for one in sets:
         if one.spacing:
-            assert one.normal_stiffness and one.shear_stiffness
-            n, normal = one.normal, one.normal_stiffness
-            if one.maximum_closure and stress is not None:
-                normal *= (1 + max(n @ stress @ n, 0.0) / (normal * one.maximum_closure)) ** 2
-            Z = (1 / (one.spacing * stiffness) for stiffness in (normal, one.shear_stiffness))
-            found.append(JointSet(n, *Z))
+            assert one.shear_stiffness
+            own = closed_stiffness(one, stress), one.shear_stiffness
+            found.append(JointSet(one.normal, *(1 / (one.spacing * k) for k in own)))
     return found
+
+
+def closed_stiffness(one: schema.JointSet, stress: np.ndarray | None) -> float:
+    """Return the normal stiffness of joints under a stress, compression positive [d, d], Pa:
+    k (1 + sigma / k d_m)^2, Pa/m, of those that stiffen as they close."""
+    K, n = one.normal_stiffness or 0.0, one.normal
+    if K and one.maximum_closure and stress is not None:
+        K *= (1 + max(n @ stress @ n, 0.0) / (K * one.maximum_closure)) ** 2
+    return K
 
 
 def slowest(scene: RockMass) -> float:

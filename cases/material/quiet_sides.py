@@ -29,10 +29,12 @@ def impedances(
     places: np.ndarray,
     region: np.ndarray,
     other: Rocks | None = None,
+    more: float = 0.0,
 ) -> np.ndarray:
     """Return the dashpots of sides of outward normals [m, d] at places [m, d], m, of rock in these
     regions [m]: tensors [m, d, d] that make the traction of a wave along the normal from its
-    velocity, Pa s/m; other : in place of the scene's rock between the joints."""
+    velocity, Pa s/m; other : in place of the scene's rock between the joints. more : pressure, Pa,
+    that closes joints which stiffen beyond their initial stress."""
     if scene.is_column:
         ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
         return along_and_across(normals, np.array(ends).reshape(-1, 2))
@@ -41,8 +43,9 @@ def impedances(
         own = [(stiffness(elastic_rock(one.rock), [], dim), one.rock.density) for one in scenes]
         other = own, region
     rocks, which = other
-    closes = any(one.maximum_closure for one in scene.joint_sets)
-    stress = closes * initial_stress(scene, places)
+    stress = np.zeros((*places.shape, dim))
+    if any(one.maximum_closure for one in scene.joint_sets):
+        stress = initial_stress(scene, places) + more * np.eye(dim)
     rows = np.column_stack([which, region, stress.reshape(-1, dim**2)])
     _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     found = np.zeros((len(normals), dim, dim))

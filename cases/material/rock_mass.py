@@ -10,7 +10,7 @@ from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import widths
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import rocks_beside, rocks_of
+from jointwave.cases.partition.joints import region_at, rocks_beside, rocks_of
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes
 from jointwave.cases.partition.shape import shape_of
@@ -18,6 +18,8 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import REST, RockMass
 
+#: Parts of the way to the top at which the density of the rock above is taken.
+ABOVE = (np.arange(200) + 0.5) / 200
 SLACK = 1e-9  # of the stress: tractions that are at a limit
 #: What the sizes of blocks and of contacts are, by the number of dimensions.
 SIZES = {2: ("area", "length"), 3: ("volume", "area")}
@@ -52,11 +54,15 @@ def initial_stress(scene: RockMass, places: np.ndarray) -> np.ndarray:
     if scene.prestress is not None:
         found += scene.prestress.tensor
     if scene.gravity is not None and scene.gravity.static:
-        g, rock = np.array(scene.gravity.direction), scene.rock
-        depth = places @ g - (np.array(scene.domain.corners) @ g).min()
-        side = rock.intact_poisson / (1 - rock.intact_poisson)
+        g, rocks = np.array(scene.gravity.direction), rocks_of(scene)
+        up = ((np.array(scene.domain.corners) @ g).min() - places @ g)[:, None] * g
+        density, poisson = np.array([[one.density, one.intact_poisson] for one in rocks]).T
+        parts = (region_at(scene.regions, places + share * up) for share in ABOVE)
+        mean = np.mean([density[part] for part in parts], axis=0)
+        weight = mean * scene.gravity.acceleration * np.linalg.norm(up, axis=1)
+        side = (poisson / (1 - poisson))[region_at(scene.regions, places), None, None]
         confined = side * np.eye(len(g)) + (1 - side) * np.outer(g, g)
-        found += np.multiply.outer(rock.density * scene.gravity.acceleration * depth, confined)
+        found += weight[:, None, None] * confined
     return found
 
 

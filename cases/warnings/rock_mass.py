@@ -11,8 +11,10 @@ from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.incident import across, plane_wave
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
+from jointwave.cases.material.closure import stresses
+from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import rocks_of
+from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
@@ -22,6 +24,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.warnings.sources import of_resolution, onset
 
 NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
+NEAR_SIDE = 1e-6  # of the domain's size: from a side to a place in the rock there
 COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
 EARLY = 1e-6  # of the duration: by which a wave may seem to be early
 
@@ -45,7 +48,26 @@ def met(scene: RockMass) -> dict[str, Any]:
         instead="one of the [[waves]] enters with its own amplitude",
         arrivals=arrivals if acting else (),
         opening={k: x for k, x in opening.items() if x.tension is False or x.tensile_strength},
+        closing=_closing(scene),
     )
+
+
+def _closing(scene: RockMass) -> Iterator[tuple[str, float, float, float]]:
+    """Yield quiet sides, the stress that is added to the initial one, Pa, and the impedances of the
+    rock there without and with it, Pa s/m, where they differ most."""
+    if not any(one.maximum_closure for one in scene.joint_sets):
+        return
+    outline, added = shape_of(scene.domain), stresses(scene)[1]
+    for side in scene.boundaries.sides("quiet"):
+        for corners, n in outline.faces_of(side):
+            places = (corners + corners.mean(axis=0)) / 2 - NEAR_SIDE * outline.size * n
+            normals, region = np.tile(n, (len(places), 1)), region_at(scene.regions, places)
+            rest, closed = (
+                np.einsum("i,mij,j->m", n, impedances(scene, normals, places, region, more=x), n)
+                for x in (0.0, added)
+            )
+            k = int((closed / rest).argmax())
+            yield f"boundaries.{side}", added, float(rest[k]), float(closed[k])
 
 
 def _fastest(scene: RockMass) -> float:

@@ -20,6 +20,7 @@ ONSET = 0.01  # of a load's peak: defines its beginning
 LATE = 5.0
 #: Crossings of the pillar in a period of the load's highest frequency that no wave test has.
 STATIC = 100.0
+MOST_REFLECTED = 0.05  # of a wave, by sides whose impedance is that of joints less closed
 LEAST_SAMPLES = 10  # in a period: of a sine they miss at most 5 % of its peak
 OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
@@ -34,6 +35,7 @@ def of_sources(
     instead: str,
     arrivals: Iterable[tuple[str, float]],
     opening: Mapping[str, Any],
+    closing: Iterable[tuple[str, float, float, float]],
 ) -> Iterator[str]:
     """Say where loads or waves act outside the run, or not as they are meant to.
 
@@ -41,6 +43,8 @@ def of_sources(
     can fail, m; None without. speed : of a pulse's wave, m/s. pressed : the side that a load acts
     on as a stress, by its table. instead : what enters such a side whole. arrivals : receivers, and
     when waves reach them, s. opening : joints that may open under bending, by their tables.
+    closing : sides that absorb waves, the stress that closes joints there, Pa, and the impedance of
+    their rock before and under it, Pa s/m.
     """
     end = scene.time.duration
     for table, pulse in scene.sources.items():
@@ -78,6 +82,13 @@ def of_sources(
                     f"record.{receiver} is reached at {at:.4g} s: after the end of the scene at "
                     f"time.duration = {end:g} s"
                 )
+    for side, stress, before, under in closing:
+        if (reflects := (under - before) / (under + before)) > MOST_REFLECTED:
+            yield (
+                f"{side} = '{scene.sides[side]}' has the impedance of rock in its initial stress: "
+                f"joints that close under {stress:.3g} Pa reflect up to {reflects:.2g} of the wave "
+                "there"
+            )
     levers = (line for table, joints in opening.items() for line in _of_lever(table, joints))
     yield from islice(levers, 1)
 

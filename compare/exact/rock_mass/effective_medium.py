@@ -25,6 +25,7 @@ from jointwave.cases.incident import COMPONENT, PlaneWave, PlaneWaves, across, i
 from jointwave.cases.loads import history_of
 from jointwave.cases.material.effective_medium import compliant, speeds, stiffness, tensor
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock_mass import initial_stress
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
@@ -67,9 +68,11 @@ def medium_field(scene: RockMass) -> MediumField:
 
 
 def medium_stiffness(scene: RockMass) -> np.ndarray:
-    """Return the stiffness of the medium in Voigt's form, Pa."""
-    dim = scene.domain.dimension
-    return stiffness(elastic_rock(scene.rock), compliant(scene.joint_sets), dim)
+    """Return the stiffness of the medium in Voigt's form, Pa: of joints that stiffen, under the
+    initial stress in the middle of the domain."""
+    middle = np.mean(scene.domain.corners, axis=0)[None]
+    sets = compliant(scene.joint_sets, initial_stress(scene, middle)[0])
+    return stiffness(elastic_rock(scene.rock), sets, scene.domain.dimension)
 
 
 def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:

@@ -154,10 +154,12 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     sets = [one for one in scene.joint_sets if not linear_law(one)]
     if not sets:
         return
-    field, places = field_of(scene), np.mean(scene.domain.corners, axis=0)[None]
+    field, corners = field_of(scene), np.array(scene.domain.corners)
+    middle = corners.mean(axis=0)
+    places = np.vstack([middle, corners])
     if isinstance(field, StackField):
         n = field.stack.normal
-        places = np.vstack([places, places + (field.stack.offsets[:, None] - places @ n) * n])
+        places = np.vstack([middle, middle + (field.stack.offsets[:, None] - middle @ n) * n])
     period = min((one.time_scale or np.inf for one in scene.waves), default=np.inf)
     count = np.clip(IN_A_PERIOD * scene.time.duration / period, 200, SAMPLES)
     times = np.linspace(0.0, scene.time.duration, int(count))
@@ -173,7 +175,8 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
         for excess, does in zip(_excess(one, pressed, shear), ("opens", "slips"), strict=True):
             yield (excess * moves / peak if peak else 0.0), f"joint set {one.name!r} {does}"
         if one.maximum_closure is not None and one.normal_stiffness:
-            closes = np.ptp(pressed) / (one.normal_stiffness * one.maximum_closure)
+            begins = one.normal_stiffness * one.maximum_closure + max(pressed.min(), 0.0)
+            closes = np.ptp(pressed) / begins
             part = _sent_back(scene, one) * float(closes / (1 + closes))
             yield part, f"joint set {one.name!r} stiffens"
 

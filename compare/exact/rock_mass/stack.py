@@ -12,11 +12,13 @@ import numpy as np
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
+from jointwave.cases.material.effective_medium import closed_stiffness
 from jointwave.cases.material.rock import ElasticRock, elastic_rock
-from jointwave.cases.material.rock_mass import set_time_constants
+from jointwave.cases.material.rock_mass import initial_stress, set_time_constants
 from jointwave.cases.partition.joints import rocks_of, strata
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import TOLERANCE, shape_of
+from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.exact.plane import parallel_joints
@@ -71,7 +73,7 @@ class JointStack:
 
 def stack_of(scene: RockMass) -> JointStack:
     """Return the stack of a scene whose joints are parallel, with a free face along them: of joints
-    that are not linear, as they are at first."""
+    that are not linear, as they are in the initial stress."""
     blocks, face = blocks_of_scene(scene), free_face(scene)
     normal = next(iter(normals_of(scene)), None)
     if normal is None:
@@ -80,18 +82,18 @@ def stack_of(scene: RockMass) -> JointStack:
     face = face if face is not None and along(face.normal, normal) else None
     contacts, etas = blocks.contacts, set_time_constants(scene)
     etas = np.zeros(len(scene.joint_sets)) if etas is None else etas
-    laws = [
-        Joint(K_n, K_s, K_n * eta, K_s * eta)
-        for K_n, K_s, eta in zip(*stiffnesses(scene), etas, strict=True)
-    ]
-    laws.append(Joint(np.inf, np.inf))  # NO_SET's
     depths, region = contacts.centroid @ normal, blocks.body.region[contacts.blocks]
     order = np.argsort(depths)
     met = (contacts.joint_set != NO_SET) | (region[:, 0] != region[:, 1])
     order = order[met[order]]
     apart = np.diff(depths[order], prepend=-np.inf)  # an opening may cut a joint into parts
     order = order[apart > TOLERANCE * np.ptp(blocks.body.vertices, axis=0).max()]
-    joints = [laws[k] for k in contacts.joint_set[order]]
+    joints = [
+        Joint(np.inf, np.inf) if k == NO_SET else _joint(scene.joint_sets[k], etas[k], stress)
+        for k, stress in zip(
+            contacts.joint_set[order], initial_stress(scene, contacts.centroid[order]), strict=True
+        )
+    ]
     below, above = region[order].T
     swap = contacts.normal[order] @ normal < 0
     below, above = np.where(swap, above, below), np.where(swap, below, above)
@@ -107,17 +109,10 @@ def stack_of(scene: RockMass) -> JointStack:
     return JointStack(rocks, normal, offsets, joints, blocks, face is not None)
 
 
-def stiffnesses(scene: RockMass) -> np.ndarray:
-    """Return the normal and the shear stiffness of each joint set [2, sets], Pa/m, in the initial
-    stress: k (1 + sigma / k d_m)^2 of joints that stiffen as they close."""
-    found = []
-    for one in scene.joint_sets:
-        n, K = one.normal, one.normal_stiffness
-        pressed = max(float(n @ scene.prestress.tensor @ n), 0.0) if scene.prestress else 0.0
-        if K and one.maximum_closure is not None:
-            K *= (1 + pressed / (K * one.maximum_closure)) ** 2
-        found.append((K, one.shear_stiffness))
-    return np.array(found).reshape(-1, 2).T
+def _joint(one: JointSet, eta: float, stress: np.ndarray) -> Joint:
+    """Return a joint as small waves meet it under a stress [d, d], Pa; eta : of dashpots, s."""
+    K_n, K_s = one.normal_stiffness or 0.0, one.shear_stiffness or 0.0
+    return Joint(closed_stiffness(one, stress), K_s, K_n * eta, K_s * eta)
 
 
 def scatters(scene: RockMass, leaves: bool = True) -> Answer:

@@ -102,6 +102,7 @@ def test_joints_beyond_what_was_measured_are_refused(roughness, wall, rock, name
         bandis_closure(roughness, wall, rock)
 
 
+SQUARE = [[9.0, 9.0], [11.0, 9.0], [11.0, 11.0], [9.0, 11.0]]
 CLOSES = {"joints.maximum_closure": 1e-3}
 #: Twice the peak, the prestress, and the weight of the whole pillar; of a shaken base twice the
 #: impedance of intact rock times the velocity, of an acceleration its integral over half a sine.
@@ -122,3 +123,17 @@ SPEED = 2 * 0.1 * np.sqrt(8.64e10 * 2400)
 )
 def test_stress_in_reach(scene_with, changes, stress):
     assert stress_in_reach(scene_with(**CLOSES, **changes)) == pytest.approx(stress, rel=1e-6)
+
+
+@pytest.mark.parametrize(("openings", "stress"), [([], 5e6 + 2e6), ([SQUARE], 3 * 5e6 - 2e6 + 3e6)])
+def test_stress_in_reach_of_a_wave_around_an_opening(rock_with, openings, stress):
+    """By Kirsch s1 becomes 3 s1 - s2 at a wall, and a wave of 1 MPa 3 MPa."""
+    wave = {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 1e6}
+    scene = rock_with(
+        {"dip": 0.0, "spacing": 2.0, "maximum_closure": 1e-3},
+        domain={"size": [20.0, 20.0], "openings": openings},
+        waves=[wave | {"period": 0.005}],
+        boundaries={"bottom": "quiet"},
+        prestress={"xx": 2e6, "yy": 5e6},
+    )
+    assert stress_in_reach(scene) == pytest.approx(stress, rel=1e-6)
