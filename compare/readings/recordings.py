@@ -1,5 +1,6 @@
 """Recordings as results: what files and arrays of recorders hold, as the readings take it."""
 
+import re
 from collections.abc import Mapping
 from os import PathLike
 from typing import Any
@@ -23,6 +24,15 @@ Recording = xr.Dataset | xr.DataArray | str | PathLike[str] | tuple[Any, ...]
 MEASURED = ("velocity", "acceleration", "displacement", "stress")
 #: As `Place`: a quantity, its direction, and its receiver's place or, where not known, its name.
 Where = tuple[str, str, tuple[float, ...] | str]
+#: Directions as recorders call them, and those across the vertical; 1 and 2 are SEED's, of HH1.
+DIRECTIONS = {
+    **{"N": "n ns sn north", "E": "e ew we east", "Z": "z v ud up down vert vertical", "X": "x"},
+    **{"R": "r rad radial", "T": "t tran trans transverse", "L": "l long longitudinal", "Y": "y"},
+}
+ACROSS = "NE XY RT LT 12"
+AXIS_OF = {word: axis for axis, words in DIRECTIONS.items() for word in words.split()}
+ENDING = rf"{'|'.join(AXIS_OF)}|(?<=[bdehms][hln])[12]"
+CHANNEL = re.compile(rf"((?:.*[\W_])?[a-z]{{0,2}})({ENDING})", re.IGNORECASE)
 MOST_SAMPLES = 4_000_000  # of an unevenly sampled recording at its smallest interval
 
 
@@ -30,8 +40,9 @@ def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
     """Return a recording as a result, SI: quantities over receivers, `time` and directions.
 
     source : a file is one that `cases.records` or xarray reads; its columns are named as
-    `velocity_x@20 [mm/s]` or `acceleration@[20,30] [g]`, or by anything with a unit; FILE:COLUMN or
-    FILE:COLUMN=LABEL selects one. quantity : of numbers without a label or unit. Uneven samples are
+    `velocity_x@20 [mm/s]` or `acceleration@[20,30] [g]`, or by anything with a unit, where channels
+    NS, EW, UP or HHN, HHE, HHZ are directions of one recorder; FILE:COLUMN or FILE:COLUMN=LABEL
+    selects one. quantity : of numbers without a label or unit. Uneven samples are
     joined by straight lines. Raises SceneError, one line with what is wrong.
     """
     if isinstance(source, xr.Dataset):
@@ -76,9 +87,10 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         found = selected(columns, every if choice.is_time else choice, spelled)
         if not found:
             raise ValueError(f"has no column {choice.column or choice.label!r}")
+        channels = iter(_channels([one.name.removeprefix("-") for at, one in found if not at]))
         waves: dict[Where, np.ndarray] = {}
         for place, column in found:
-            at: Where = place or (_measured(column, quantity), "", column.name.removeprefix("-"))
+            at: Where = place or (_measured(column, quantity), *next(channels))
             waves[at] = column.si(UNITS[at[0]])
         if len(waves) < len(found):
             raise ValueError("must name each column once")
@@ -87,6 +99,18 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         if isinstance(error, SceneError):
             raise
         raise SceneError(str(choice.path), "", None, str(error)) from None
+
+
+def _channels(names: list[str]) -> list[tuple[str, str]]:
+    """Return the direction and the recorder of channels named by directions across one another,
+    HHN and HHE, or Vel L and Vel T; of others no direction, and each for itself."""
+    matches = zip(map(CHANNEL.fullmatch, names), names, strict=True)
+    found = [(AXIS_OF.get(m[2].lower(), m[2]), m[1]) if m else ("", name) for m, name in matches]
+    for recorder in {one for _, one in found}:
+        axes = {axis for axis, one in found if one == recorder}
+        if len(axes) > 1 and any(axes <= {"Z", *pair} for pair in ACROSS.split()):
+            return found
+    return [("", name) for name in names]
 
 
 def _measured(column: Column, quantity: str) -> str:

@@ -104,6 +104,11 @@ def test_peaks_and_intensities_of_an_acceleration(files):
     for read in (jw.ppv, jw.arias):
         found = read(files["two.txt"]).sum().item()
         assert found == pytest.approx(read(velocity).item(), rel=2e-4)
+    text = files["two.txt"].read_text()
+    for one, other in (("HHE", "HHZ"), ("Vel NS", "Vel EW"), ("Tran", "Long")):
+        header = text.replace("acceleration_x@7", one).replace("acceleration_y@7", other)
+        files["two.txt"].write_text(header)  # directions of one recorder
+        assert jw.ppv(files["two.txt"]).item() == pytest.approx(jw.ppv(velocity).item(), rel=2e-4)
     ramp = ([0.0, 1.0], [0.0, 3.0])
     intensity = jw.arias(ramp, gravity=10.0, quantity="acceleration")
     assert intensity.item() == pytest.approx(np.pi / 20 * 3.0)  # of 9 t^2
