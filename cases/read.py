@@ -125,8 +125,10 @@ def _of_file(path: str | Path, overrides: dict[str, Any] | None, asked: bool = T
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Parse `key=value`; the value is read as TOML and, failing that, as a plain string."""
+    """Parse `key=value`, its parts with or without quotes; the value is read as TOML and, failing
+    that, as a plain string."""
     key, equals, value = text.partition("=")
+    key = re.sub("[\"']", "", key)
     if not equals or not key.strip():
         raise SceneError("--set", text, None, "must be key=value, e.g. joints.damping_ratio=0.05")
     try:

@@ -98,7 +98,7 @@ class Comparison:
     """One variant of a scene, its solutions, and why the others do not apply.
 
     scene : of either kind. results : by name. reasons : name to reason, of solutions that do not
-    apply. rows : the distances. besides : the external curves, one entry per file.
+    apply, or `failed`. rows : the distances. besides : the external curves, one entry per file.
     """
 
     scene: Any
@@ -106,6 +106,7 @@ class Comparison:
     reasons: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
     besides: list[AlignedCurve] = field(default_factory=list)
+    failed: list[str] = field(default_factory=list)
 
 
 def measure(

@@ -140,7 +140,7 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
     return SolvedScene(
         request,
         comparisons[0].scene,
-        {engine: float(results[engine].attrs["seconds_stepping"]) for engine in scores},
+        {n: float(results[n].attrs["seconds_stepping"]) for n in scores if n in results},
         *_draw(request, comparisons, folder, own),
         [measure(comparisons) for measure in CLAIMS.get(request.number or 0, [])],
         {

@@ -49,14 +49,16 @@ def solved(
 ) -> Comparison:
     """Solve a scene by the solutions that apply, without measuring any pair.
 
-    answers : whether each requested solution applies, by name. Raises SceneError if none does.
+    answers : whether each requested solution applies, by name. What fails is logged and left out.
+    Raises SceneError if none applies, and the error of the first if all fail.
     """
     if not any(answers.values()):
         why = "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items())
         raise SceneError(scene.where, "", None, f"nothing solves it: {why}")
-    asked = [name for name, answer in answers.items() if answer]
-    return Comparison(
-        scene,
-        dict(stored.solve(asked, scene, progress)),
-        {name: answer.reason for name, answer in answers.items() if not answer},
-    )
+    asked, failed = [name for name, answer in answers.items() if answer], dict[str, Exception]()
+    results = dict(stored.solve(asked, scene, progress, failed=failed))
+    if not results:
+        raise next(iter(failed.values()))
+    reasons = {name: answer.reason for name, answer in answers.items() if not answer}
+    reasons |= {name: str(error) for name, error in failed.items()}
+    return Comparison(scene, results, reasons, failed=[*failed])

@@ -23,8 +23,9 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
     known = selection()
     chosen: dict[str, list[Any]] = {e: [m for m in models if m in known[e]] for e in engines}
     if left := [m for m in models if m not in chain(*chosen.values())]:
+        fitting = [engine for engine, of in known.items() if left[0] in of]
         every = ", ".join(model for of in known.values() for model in of if model)
-        allowed = f"must be a model of a selected --engine: {every}"
+        allowed = f"needs --engine {fitting[0]}" if fitting else f"must be one of {every}"
         raise SceneError("--model", left[0], None, allowed)
     found = ((engine, m) for engine, mine in chosen.items() for m in mine or [None])
     return list(dict.fromkeys(found))

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import InterruptedRun, SceneError, UnstableError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import Progress
 from jointwave.compare.runs import timings
@@ -115,11 +115,12 @@ class ResultFolder:
         scene: AnyScene,
         progress: Progress | None = None,
         suffix: str = "",
+        failed: dict[str, Exception] | None = None,
     ) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name and the result of each solver, stored where it was not read.
 
-        suffix : of the file names, where the scene records other than its file says. Raises the
-        errors of `compare.engines.solve`.
+        suffix : of the file names, where the scene records other than its file says. failed : takes
+        the errors of `compare.engines.solve` by name, each of which is logged; None: raises them.
         """
         every, folder, read = list(names), self.folder, {}
         for i, name in enumerate(every):
@@ -136,7 +137,14 @@ class ResultFolder:
             else:
                 log_reading(read)
                 read = {}
-                result, seconds = timings.solved(name, scene, part)
+                try:
+                    result, seconds = timings.solved(name, scene, part)
+                except (SceneError, UnstableError) as error:
+                    if failed is None or isinstance(error, InterruptedRun):
+                        raise
+                    failed[name] = error
+                    log.warning("warning: %s is left out: %s", name, error)
+                    continue
                 if path and not _is_stored(path, signed(result, about, seconds)):
                     folder = None
             part(1.0)

@@ -152,8 +152,9 @@ def compare_scene(
     if not found.rows:
         allowed = "has nothing to compare: no pair of solutions applies"
         raise SceneError(scene.where, "", None, allowed)
-    return [
+    rows = [
         {name: nan if x is None else x for name, x in row.facts.items()}
         | {"pair": row.solutions, "faint": str(row.faint).lower()}
         for row in found.rows
     ]
+    return rows + [one for name in found.failed for one in _failed(found.reasons[name])]

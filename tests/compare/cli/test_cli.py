@@ -102,17 +102,21 @@ def test_run_tells_what_broke(jointwave, facts):
     assert count > 2 and f"{count} joints broke" in jointwave(*options).out
 
 
-def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave):
+def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave, caplog):
     """A forced step that diverges leaves the earlier file unchanged, beside the valid part."""
     run, old = ("run", *BASE, "--out", "out"), Path("out/dem.nc")
     jointwave(*run, *SHORT)
     before = old.read_bytes()
     forced = ("numerics.dem.step_fraction=1.5", "numerics.dem.allow_unstable=true")
     forced += ("record.interval=1e-3", "load.period=0.02", "time.duration=3.0")
-    done = jointwave(*run, *(part for one in forced for part in ("--set", one)), code=3)
+    changes = [part for one in forced for part in ("--set", one)]
+    done = jointwave(*run, *changes, code=3)
     assert done.err.count("\n") == 1 and "critical" in done.err
     assert old.read_bytes() == before
     assert {path.name for path in Path("out").iterdir()} == {"dem.nc", "dem.stopped.nc"}
+    changes += ("--set", 'expect."dem ~ lattice"=1')  # as in a file
+    done = jointwave("compare", *BASE, *changes)
+    assert caplog.text.count("warning: dem is left out: ") == 1 and "jointed rock" in done.out
 
 
 def test_compare_writes_figure_curves_and_distances(jointwave):
