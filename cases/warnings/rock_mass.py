@@ -1,7 +1,7 @@
 """Warnings of likely mistakes in a rock mass, one line each."""
 
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,8 @@ from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.closure import stresses
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import region_at, rocks_of
+from jointwave.cases.partition.joints import region_at, rocks_of, within
+from jointwave.cases.partition.lattice import by_direction, squared
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
@@ -41,7 +42,7 @@ def met(scene: RockMass) -> dict[str, Any]:
     )
     loads, opening = scene.entries("loads"), {} if scene.in_space else dict(sets)  # others in space
     return dict(
-        crossings=_fastest(scene) / float(scene.domain.extent.max()),
+        crossings=fastest(scene) / float(scene.domain.extent.max()),
         block=(scene.numerics.dem.block or _block_size(scene)) if fails else None,
         speed=lambda one: float(rock.s_speed if one.kind == "S" else rock.p_speed),
         pressed={k: f"boundaries.{x.side}" for k, x in loads if x.kind == "pressure" and x.side},
@@ -70,7 +71,8 @@ def _closing(scene: RockMass) -> Iterator[tuple[str, float, float, float]]:
             yield f"boundaries.{side}", added, float(rest[k]), float(closed[k])
 
 
-def _fastest(scene: RockMass) -> float:
+def fastest(scene: RockMass) -> float:
+    """Return the largest speed of P in a rock mass, m/s."""
     return max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
 
 
@@ -178,7 +180,7 @@ def _block_size(scene: RockMass) -> float | None:
     if not spacings:
         return None
     size, dim = float(scene.domain.extent.max()), scene.domain.dimension
-    waves = _plane_waves(scene)
+    waves = plane_waves(scene)
     if len(scene.joint_sets) == 1 and waves is not None:
         along = scene.joint_sets[0].frame[1:]
         if all(np.abs(along @ direction).max() < GRAZING for direction, _ in waves.values()):
@@ -190,7 +192,7 @@ def _block_size(scene: RockMass) -> float | None:
     return min(spacings[dim - 1], size) if len(spacings) >= dim else size
 
 
-def _plane_waves(scene: RockMass) -> dict[str, tuple[np.ndarray, np.ndarray]] | None:
+def plane_waves(scene: RockMass) -> dict[str, tuple[np.ndarray, np.ndarray]] | None:
     """Return the direction and the motion [d] of each plane wave by its table, of those too that
     leave a whole flat side; None where a load sends waves in all directions."""
     found = {}
@@ -211,7 +213,7 @@ def _of_rollers(scene: RockMass) -> Iterator[str]:
     """Say which waves rollers along their way hold back, since they move rock into these."""
     normals = shape_of(scene.domain).normals()
     for side in scene.boundaries.sides("roller"):
-        for key, (direction, motion) in (_plane_waves(scene) or {}).items():
+        for key, (direction, motion) in (plane_waves(scene) or {}).items():
             n = normals[side]
             if np.abs(n @ direction).max() < GRAZING < np.abs(n @ motion).max():
                 yield (
@@ -258,7 +260,7 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
         away = distance(place, shape_of(scene.domain).faces_of(pulse.side, pulse.opening))
     else:
         away = float(np.linalg.norm(place - pulse.at))
-    return onset(pulse) + away / _fastest(scene)
+    return onset(pulse) + away / fastest(scene)
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
@@ -281,6 +283,26 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
             yield f"{key} = {_at(at)} lies on a joint of joint_sets[{k}], {what}"
 
 
+def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
+    """Warn of points on welds and roller sides, where the stress of triangles does not converge."""
+    every, block = within(scene, scene.joint_sets), scene.numerics.dem.block
+    if block is None or all(squared(x) or len(by_direction(x.joint_sets)) > 1 for x in every):
+        return
+    shape, tiny = shape_of(scene.domain), COINCIDENT * scene.reach
+    rollers = [x for side in scene.boundaries.sides("roller") for x in shape.faces_of(side)]
+    around = tiny * np.array([*product((-1, 1), repeat=scene.domain.dimension)])
+    for i, at in enumerate(scene.record.points):
+        welded = len(set(region_at(scene.regions, np.array(at) + around))) > 1
+        welded &= min((_away(scene, x, np.array([at]))[0] for x in scene.joint_sets), default=1) > 0
+        if welded or (rollers and distance(np.array(at), rollers) <= tiny):
+            place = "a welded boundary of regions" if welded else "a roller side"
+            yield (
+                f"record.points[{i}] = {_at(at)} lies on {place}, where the stress of rigid blocks "
+                f"is off by up to 50 %, however small they are: half a block away, {block / 2:.3g} "
+                "m, it converges"
+            )
+
+
 RULES = (
     _of_joints_given_twice,
     _of_places,
@@ -289,5 +311,6 @@ RULES = (
     _of_rollers,
     _of_parts,
     _of_points_on_joints,
+    _of_points_at_triangles,
     _of_starts,
 )
