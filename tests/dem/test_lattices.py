@@ -17,7 +17,14 @@ from jointwave.cases.schema.domain import Domain
 from jointwave.dem.contacts.chunks import chunks_of
 from jointwave.dem.contacts.faces import Contacts
 from jointwave.dem.kernel.leapfrog import march
-from jointwave.dem.kernel.model import Blocks, KernelFlags, Model, samples_for, state_at_rest
+from jointwave.dem.kernel.model import (
+    Blocks,
+    KernelFlags,
+    Model,
+    held_by,
+    samples_for,
+    state_at_rest,
+)
 from jointwave.joints.law import law, parts_of, table_of
 
 SIDE, DENSITY, NORMAL, SHEAR = 2.0, 2500.0, 3e9, 1.1e9
@@ -46,8 +53,9 @@ def lattice(dim, points):
     stiffness = np.full(len(normals), NORMAL)
     shear = np.full(len(normals), SHEAR)
     own = law(stiffness, None, np.ones(len(normals), dtype=bool), shear_stiffness=shear)
-    parts, none = parts_of(own)._replace(planar=dim == 2), np.zeros(0, dtype=int)
-    form = KernelFlags(dim, True, parts, points, False, False, False, False, False)
+    # As blocks of scenes have them, whose kernel serves: some held, joints that differ, a ledger.
+    parts, none = parts_of(own)._replace(planar=dim == 2, varied=True), np.zeros(0, dtype=int)
+    form = KernelFlags(dim, True, parts, points, False, False, False, True, True)
     mass = DENSITY * SIDE**dim
     inertia = np.tile([mass] * dim + [mass * SIDE**2 / 6] * form.rotations, (count**dim, 1))
     moments = [second] if dim == 2 else [second, second, 0.0]
@@ -56,11 +64,14 @@ def lattice(dim, points):
         faces,
         count**dim,
         form.freedoms,
+        law=np.arange(len(normals)) % 2,
         points=np.tile(rule, (len(normals), 1, 1)) if points else None,
         second=None if points else np.tile(moments, (len(normals), 1)),
     )
     blocks = Blocks(inertia, dt, 1.0, 0.0, np.zeros(dim))
-    return Model(form, blocks, chunks, table_of(own), None, none, none)
+    one = np.diag(inertia[0])[None]
+    held = held_by(0 * one, np.zeros(1, int), one, dt)
+    return Model(form, blocks, chunks, table_of(own).repeat(2, axis=1), held, none, none)
 
 
 @pytest.mark.parametrize("points", [False, True], ids=["faces", "points"])

@@ -207,6 +207,7 @@ def test_a_block_that_a_force_turns_has_its_inertia_in_its_mean_stress(depth):
         "domain": {"size": [1.0, *depth, 5.0]},
         "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
         "joint_sets": [loose | {"normal_stiffness": 1e4, "shear_stiffness": 1e4}],
+        "boundaries": {"bottom": "fixed"},
         "loads": [push | {"period": 0.1}],
         "time": {"duration": 0.02},
         "record": {"points": [[0.3, *across, 1.9]], "interval": 1e-3},

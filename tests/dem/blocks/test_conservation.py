@@ -19,7 +19,7 @@ LAWS = {
     "slip": SLIP,
     "slip that weakens, lifts and loses its cohesion": SLIP | WORN | DASHPOTS,
     "rate and state": SLIP | RATE,
-    "softening": SLIP | DASHPOTS | {"tensile_strength": 5e4, "fracture_energy": 0.75},
+    "softening": {"tensile_strength": 5e4, "fracture_energy": 0.75},
 }
 #: In the step in which a joint opens its traction has a kink: tests/field_cases/test_open_ledgers.
 OPEN = ("no tension", "softening")

@@ -18,10 +18,10 @@ UNDER_STRESS = {"xx": 2e6, "yy": 3e6}
 def everything(rock_mass, joint, wave):
     """Return 750 blocks that slide, under stress, weight and damping, with quiet sides."""
 
-    def scene(stress=UNDER_STRESS, **numerics):
+    def scene(**numerics):
         return rock_mass(
             joint_sets=[joint(**SLIDES)],
-            prestress=stress,
+            prestress=UNDER_STRESS,
             gravity={"static": False},
             damping={"mass_proportional": 5.0, "local": 0.05},
             waves=[wave(amplitude=4e6)],
@@ -82,7 +82,7 @@ def test_threads_change_no_bit(name, request, narrow, assert_alike):
 
 def test_a_run_on_threads_that_goes_on_is_the_same_to_the_last_bit(everything, narrow, keeper_at):
     """Waves, snapshots, and the ledger, whose sums have one order for one number of threads."""
-    own, keeper = everything(None, threads=2), keeper_at(40)
+    own, keeper = everything(threads=2), keeper_at(40)
     with pytest.raises(InterruptedRun):
         simulate(own, keeper=keeper)
     assert 40 <= keeper.done < 100
@@ -94,7 +94,7 @@ def test_threads_stop_with_one_that_diverges(everything, narrow, assert_alike):
     forced, found = {"step_fraction": 1.5, "allow_unstable": True}, []
     for threads in (1, 2):
         with pytest.raises(StoppedError, match=r"^.*diverged at.*fastest at \[.*$") as stopped:
-            simulate(everything(None, threads=threads, **forced))
+            simulate(everything(threads=threads, **forced))
         found.append(stopped.value)
     assert str(found[0]) == str(found[1])
     assert_alike(found[1].result, found[0].result)

@@ -11,6 +11,7 @@ from jointwave.compare.misfit.metrics import misfit, relative_l2
 from jointwave.results.dataset import energy_residual
 
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
+DAMPED = [{"y": 20.0, "damping_ratio": 0.03}]
 DOWN = {"direction": [0, 1, 0]}
 SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.02, "quantity": "velocity"}
 CHAINS = {
@@ -39,6 +40,8 @@ ECCENTRIC = {"load": {**BLOW, "at": [0.1, -0.05]}, "joints__damping_ratio": 0.05
 ROWS = {
     "matched, fixed": {"ends": {"start": "matched", "end": "fixed"}},
     "shaken base, quiet": {
+        "motion__rotation": "none",
+        "joints__damping_ratio": None,
         "ends": {"start": "fixed", "end": "quiet"},
         "load": {**BASE, "amplitude": 100.0, "quantity": "acceleration"},
     },
@@ -51,6 +54,7 @@ ROWS = {
     },
     "blocks that do not turn": {
         "motion__rotation": "none",
+        "joints__damping_ratio": None,
         "load": BLOW,
         "ends": {"start": "quiet", "end": "matched"},
     },
@@ -103,7 +107,7 @@ SLIP = {"friction_angle": 20.0, "cohesion": 1e4}
 HELD, OPEN = {"start": "matched", "end": "fixed"}, {"start": "quiet", "end": "matched"}
 LEDGERS = {
     "large step": ("pillar", {"numerics__dem__step_fraction": 0.9}),
-    "local damping": ("pillar", {"damping__local": 0.3, "ends__end": "quiet"}),
+    "local damping": ("row", {"damping__local": 0.3, "ends__end": "quiet"}),
     "segments": ("pillar", {"segments": SEGMENTS, "joints__damping_ratio": 0.1, "ends": HELD}),
     "slip, dashpots, prestress": (
         "row",
@@ -177,7 +181,7 @@ def test_a_loaded_face(struck, direction, quantity):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"joints__damping_ratio": 0.02, "ends__end": "quiet"},
+        {"joints__damping_ratio": 0.02, "soft_layers": DAMPED, "ends__end": "quiet"},
         {"joints__damping_ratio": 0.02, "soft_layers": SOFT},
         {"soft_layers": [{"y": 20.0, "tension": False}], "joints__tension": True},
         {"time__duration": 0.035},

@@ -15,11 +15,13 @@ IDLE = {
         "pillar",
         {"joints": {"tensile_strength": 1e12, "fracture_energy": 1e18}},
     ),
-    "weightless": (
+    "weightless under a prestress of zero": (
         "pillar",
-        {"gravity": {"direction": [0, 1, 0], "acceleration": 0.0, "static": False}},
+        {
+            "gravity": {"direction": [0, 1, 0], "acceleration": 0.0, "static": False},
+            "prestress": {"normal": 0.0},
+        },
     ),
-    "prestress of zero": ("pillar", {"prestress": {"normal": 0.0}}),
     "ledger in space": ("row", {"record__energy": False}),
     "layer like the rock": ("row", {"soft_layers": [{"y": 2.0}]}),
     "points by default": ("row", {"joints__contact_points": 2}),
