@@ -113,13 +113,10 @@ def test_what_is_not_given_is_absent(scene_with):
     assert set(bare.data_vars) == {"stress", "velocity"}
 
 
-def test_hash_follows_every_number(scene_with):
+def test_hash_follows_every_number_and_the_samples_of_a_history(scene_with, tmp_path):
     same = [scene_hash(scene_with()), scene_hash(scene_with())]
     other = scene_hash(scene_with(**{"load.period": 0.010001}))
     assert len({*same, other}) == 2
-
-
-def test_hash_follows_the_samples_of_a_history(tmp_path):
     (tmp_path / "scene.toml").write_text((CASES / "beyond/blast-history.toml").read_text())
     hashes = set()
     for stress in (1.0, 2.0):
