@@ -41,7 +41,7 @@ SIMPLEX = {"cell": "simplex", "scheme": "explicit", "order": 1}
     ("kind", "model", "dim", "numerics"),
     [
         (QUIET, "jointed", 3, {}),
-        *((SHAKEN, "jointed", dim, {}) for dim in (2, 3)),
+        (SHAKEN, "jointed", 3, {}),
         (QUIET, "jointed", 3, SIMPLEX),
         (SHAKEN, "equivalent", 1, {}),
         (SLIDES, "jointed", 3, {}),

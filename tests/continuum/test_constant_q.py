@@ -27,6 +27,7 @@ from tests.continuum.stacked import readings, stack
 
 ROCK = {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2, "quality_factor": 10.0}
 ELASTIC = {name: value for name, value in ROCK.items() if name != "quality_factor"}
+slow = pytest.mark.slow
 SPEED = np.sqrt(2.0)  # of the bar of `stack`
 Q = {"rock__quality_factor": 10.0}
 LAYER = {"y": 5.0, "spacing_stiffness": 4.375e8}
@@ -39,7 +40,7 @@ def of_bar(body):
     return Problem(body, readings(body), mechanisms=found)
 
 
-@pytest.mark.parametrize(("dim", "number"), [(2, 4), (3, 20)])
+@pytest.mark.parametrize(("dim", "number"), [(2, 4), pytest.param(3, 20, marks=slow)])
 def test_a_mode_rings_and_decays_as_the_root_of_leapfrog_says(dim, number):
     """Rock of one quality factor has the modes of elastic rock."""
     body = stack(dim, 1, 4 if dim < 3 else 2, 1)
@@ -154,7 +155,7 @@ IMPLICIT = [
 @pytest.mark.parametrize(
     ("model", "changes", "numerics"),
     [
-        ("jointed", {"joints__damping_ratio": 0.02}, EXPLICIT[:2]),
+        pytest.param("jointed", {"joints__damping_ratio": 0.02}, EXPLICIT[:2], marks=slow),
         ("equivalent", {"soft_layers": [LAYER]}, EXPLICIT[:2]),
         ("jointed", {"segments": [BAR], "joints__damping_ratio": 0.01}, EXPLICIT[:2]),
         ("jointed", {}, IMPLICIT),

@@ -21,10 +21,9 @@ ABSORBS = {"ends__start": "quiet", "ends__end": "matched"}
 #: Model, dimension, keys and numerics; four blocks of a bar, two in the plane and in space.
 KINDS = {
     "undamped": ("jointed", 1, {}, {}),
-    "damped, soft layer": ("jointed", 1, DAMPED | LAYER, {}),
     "quiet": ("jointed", 1, {"ends__start": "quiet", "ends__end": "quiet"}, {}),
     "matched": ("jointed", 1, {"ends__start": "matched", "ends__end": "matched"}, {}),
-    "damped, absorbing": ("jointed", 1, DAMPED | ABSORBS, {}),
+    "damped, soft layer, absorbing": ("jointed", 1, DAMPED | LAYER | ABSORBS, {}),
     "linear": ("jointed", 1, DAMPED, {"order": 1}),
     "quartic": ("jointed", 1, DAMPED, {"order": 4}),
     "homogenised": ("equivalent", 1, {"ends__end": "fixed"}, {}),

@@ -45,6 +45,7 @@ JOINTS = {
     },
     "soft layer, shaken base, matched end, mass damping": {
         "soft_layers": LAYER,
+        "joints__damping_ratio": 0.05,
         "load": {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"},
         "ends": {"start": "fixed", "end": "matched"},
         "damping__mass_proportional": 50.0,

@@ -85,6 +85,7 @@ def test_a_linear_run_is_factorised_once(pillar):
     ends = {"start": "matched", "end": "quiet"}
     scene = pillar(
         pillar__length=2.0, soft_layers=[], joints__damping_ratio=0.05, ends=ends,
+        prestress={"normal": 1e5},
         time__duration=2e-3, record={"stress": [0.5], "velocity": [0.2]},
         numerics__continuum__scheme="implicit",
     )  # fmt: skip

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.errors import SceneError
 from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import at_rest
 from jointwave.continuum.run import simulate
@@ -38,19 +37,6 @@ def test_a_prestress_is_in_equilibrium_where_joints_hold_it(rock_mass):
     assert np.abs(found.velocity).max() < 1e-13  # under 6 MPa rock moves at up to 0.5 m/s
     assert np.abs(found.stress[0] - [4e6, 6e6, 5e5]).max() < 1e-6
     assert np.abs(found.traction[0] - [P @ n @ n, P @ n @ s]).max() < 1e-6
-
-
-@pytest.mark.parametrize(
-    "stress, keys",
-    [
-        ({"xx": 1e6, "yy": -1e6}, {"tension": False}),
-        ({"xx": 9e6, "yy": 1e6}, {"friction_angle": 20.0}),
-    ],
-)
-def test_a_prestress_that_joints_cannot_carry_is_refused(stress, keys, rock_mass):
-    scene = rock_mass({"dip": 30.0, "through": [3.0, 3.0], **keys}, prestress=stress)
-    with pytest.raises(SceneError, match="prestress"):
-        simulate(scene)
 
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
