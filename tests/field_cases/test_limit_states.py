@@ -187,7 +187,7 @@ def test_a_wedge_stands_above_the_limit_and_slides_below():
 
 HEIGHT = 4.0  # m, of the upper prism
 FACES = {  # counter-clockwise, m
-    "square": [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)],
+    "parallelogram": [(0.0, 0.0), (2.0, 0.0), (2.4, 2.0), (0.4, 2.0)],
     "triangle": [(0.0, 0.0), (3.0, 0.0), (1.0, 2.0)],
     "trapezium": [(0.0, 0.0), (3.0, 0.0), (2.0, 1.5), (0.5, 1.5)],
     "pentagon": [(0.0, 0.0), (2.0, -0.5), (3.0, 1.0), (1.5, 2.0), (0.2, 1.2)],

@@ -43,7 +43,8 @@ VISCOUS = {"joints.damping_ratio": 0.05, "ends.end": "matched"}
 
 @pytest.mark.parametrize("rock", ["equivalent", "jointed"])
 @pytest.mark.parametrize(
-    ("dim", "changes"), [(1, {}), (2, {}), (3, {}), (1, VISCOUS), (3, VISCOUS)]
+    ("dim", "changes"),
+    [(1, {}), (2, {}), (3, {}), (1, VISCOUS), pytest.param(3, VISCOUS, marks=pytest.mark.slow)],
 )
 def test_the_rock_of_a_pillar_is_the_exact_bar_in_every_dimension(column, rock, dim, changes):
     """Homogenised and with every joint within 0.1 % of the exact bar, whose own error is below.

@@ -66,16 +66,6 @@ def test_rollers_bear_the_weight_and_confine_it(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_rock_slides_freely_on_rollers(engine):
-    """Gravity along them, all of a sudden: v = g t of all the rock, without any stress."""
-    gravity = {"direction": [1.0, 0.0], "static": False}
-    found = solve(engine, column(gravity=gravity, boundaries={"bottom": "roller"}))
-    expected = np.stack([9.81 * found["time"].values, 0 * found["time"].values], axis=1)
-    np.testing.assert_allclose(found["velocity"].values[0], expected, atol=1e-9)
-    assert np.abs(found["stress"].values).max() < 1e-2
-
-
-@pytest.mark.parametrize("engine", ENGINES)
 def test_rock_under_a_stress_with_shear_rests_on_rollers(engine):
     """The rock beyond goes on to bear the shear of the in-situ stress."""
     stress = {"xx": 3e6, "yy": 5e6, "xy": 1e6}

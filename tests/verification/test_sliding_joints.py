@@ -70,7 +70,7 @@ def test_blocks_and_rock_tend_to_the_exact_joint(name):
     ("name", "variant", "scheme", "steps"),
     [
         (WEAKENING, "", "explicit", 1000),
-        (WEAKENING, "", "implicit", 1000),
+        pytest.param(WEAKENING, "", "implicit", 1000, marks=slow),
         (RATED, "", "explicit", 500),
         (RATED, "", "implicit", 500),
         (RATED, "rate strengthening", "explicit", 500),
@@ -97,8 +97,11 @@ def lifted():
 
 @pytest.mark.parametrize(
     ("simulate", "scheme", "bound"),
-    [(dem.simulate, "explicit", 0.07), (bar, "explicit", 0.01), (bar, "implicit", 0.01)],
-    ids=["blocks", "rock", "implicit"],
+    [
+        pytest.param(dem.simulate, "explicit", 0.07, id="blocks"),
+        pytest.param(bar, "explicit", 0.01, id="rock"),
+        pytest.param(bar, "implicit", 0.01, id="implicit", marks=slow),
+    ],
 )
 def test_a_joint_that_is_lifted_sends_off_pressure(simulate, scheme, bound):
     """Shear and pressure on both sides, in waves of 32 m and 88 m: blocks of 0.25 m, and rock."""
