@@ -30,7 +30,7 @@ def alone():
     return {name: simulate(scene) for name, scene in shared.scenes().items()}
 
 
-@pytest.fixture(scope="module", params=[2, 3])
+@pytest.fixture(scope="module", params=[pytest.param(2, marks=pytest.mark.slow), 3])
 def found(request, mpiexec, alone, tmp_path_factory):
     """Return what `shared.main` finds in so many processes, by kernels compiled before."""
     (launcher, environment), count = mpiexec, request.param

@@ -56,8 +56,12 @@ def rock(beds, walls, changes):
     return jw.load({key: one for key, one in (tables | changes).items() if one is not None})
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("name", RUNS)
+EACH = [(name, engine) for name in RUNS for engine in ENGINES]
+#: Kernels of all of these laws take long to compile: by blocks alone, unless slow tests run.
+EACH[1] = pytest.param(*EACH[1], marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize(("name", "engine"), EACH)
 def test_a_run_in_space_goes_on_to_the_same_bits(engine, name, keeper_at):
     scene, keeper = rock(*RUNS[name]), keeper_at(40)
     with pytest.raises(InterruptedRun):
