@@ -36,23 +36,6 @@ def read(matrix, x, constant, out, s, share):
 
 
 @formula
-def press(quiet, closure, force):
-    """Subtract the forces of the springs in front of dashpots."""
-    for k in range(closure.shape[0]):
-        for a in range(closure.shape[1]):
-            force[quiet.freedom[k, a]] -= quiet.stiffness[k, a] * closure[k, a]
-
-
-@formula
-def close(quiet, v, closure):
-    """Advance the closure of springs in front of dashpots by a step."""
-    for k in range(closure.shape[0]):
-        for a in range(closure.shape[1]):
-            moved = quiet.gain[k, a] * v[quiet.freedom[k, a]]
-            closure[k, a] = quiet.decay[k, a] * closure[k, a] + moved
-
-
-@formula
 def dot(x, y):
     """Return the product of two vectors, as far as the first goes, summed in four parts."""
     a, b, c, d, n = 0.0, 0.0, 0.0, 0.0, x.size // 4 * 4
@@ -113,134 +96,6 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 force[i + o] -= found
                 force[j + o] += found
 
-    @formula
-    def relaxing_rock(c, s, w, sampled):
-        """Set the force of rock with a quality factor; return the energy of its springs, J, where
-        sampled."""
-        m, found = c.memory, 0.0
-        if ledger and sampled:
-            multiply(c.stiffness, s.u, w.force)
-            found -= 0.5 * m.relaxed * dot(w.force[: c.mass.size], s.u)
-            for k in range(m.share.size):
-                multiply(c.stiffness, s.elongation[k], w.force)
-                found -= 0.5 * m.spring[k] * dot(w.force[: c.mass.size], s.elongation[k])
-        strain(m, s.u, s.elongation, w.strained)
-        multiply(c.stiffness, w.strained, w.rock)
-        for i in range(w.force.size):
-            w.force[i] = w.rock[i]
-        return found
-
-    @formula
-    def forces(c, s, w, sampled):
-        """Set the forces of rock and joints at a whole step, and drags apart; return the energies
-        of springs, opening, and springs whose work is summed up as viscous, J, those of rock where
-        sampled. Friction's work enters the ledger."""
-        elastic, spent = 0.0, 0.0
-        if relaxing:
-            elastic = relaxing_rock(c, s, w, sampled)
-        else:
-            multiply(c.stiffness, s.u, w.force)
-            if ledger and sampled:
-                elastic = -0.5 * dot(w.force[: c.mass.size], s.u)
-        kept = elastic if relaxing else 0.0
-        if viscous:
-            for i in range(s.u.size):
-                w.rate[i], w.drag[i] = 1.5 * s.v[i] - 0.5 * s.v_before[i], 0.0
-            if damped:
-                multiply(c.damping, w.rate, w.drag)
-        if jointed:
-            times(c.jumps, s.u, w.jump)
-            if rated:
-                times(c.jumps, s.v, w.moved)
-                for k in range(w.moved.size):
-                    w.moved[k] *= c.dt
-            if dashpots:
-                times(c.jumps, w.rate, w.jump_rate)
-            slid, stored, spent = tractions(
-                c.points, c.dt, w.jump, w.moved, w.jump_rate, s.history, s.history, w.loads, w.drags
-            )
-            add_transposed(c.jumps, w.loads, w.force)
-            if dashpots:
-                add_transposed(c.jumps, w.drags, w.drag)
-            elastic += stored
-            s.sums[FRICTION] += slid
-        if viscous:
-            for i in range(s.u.size):
-                w.force[i] += w.drag[i]
-        return elastic, spent, kept
-
-    @formula
-    def move(c, s, w, moved):
-        """Advance the velocities by a step; moved : of fixed freedoms in it, m."""
-        for i in range(c.mass.size):
-            s.v_before[i] = s.v[i]
-            s.v[i] = c.keep * s.v[i] + c.inverse[i] * w.force[i]
-        q, known = c.quiet, w.braking
-        for k in range(q.freedom.shape[0]):
-            for a in range(dim):
-                known[k, a] = s.v[q.freedom[k, a]]
-                for b in range(dim):
-                    known[k, a] -= q.beta[k, a, b] * s.v_before[q.freedom[k, b]]
-            for a in range(dim):
-                found = 0.0
-                for b in range(dim):
-                    found += q.solve[k, a, b] * known[k, b]
-                s.v[q.freedom[k, a]] = found
-            for a in range(dim):
-                braked = 0.0
-                for b in range(dim):
-                    j = q.freedom[k, b]
-                    braked += q.viscosity[k, a, b] * 0.5 * (s.v_before[j] + s.v[j])
-                if sprung:
-                    braked += q.stiffness[k, a] * s.closure[k, a]
-                w.braking[k, a] = braked
-        for k in range(c.fixed.size):
-            s.v[c.fixed[k]] = c.direction[k] * moved / c.dt
-
-    @formula
-    def work(c, s, w, way, drive):
-        """Enter the work of the forces over half a step of the velocities `way`."""
-        half = 0.5 * c.dt
-        if viscous:
-            s.sums[VISCOUS] -= half * dot(w.drag[: c.mass.size], way)
-        if relaxing:
-            s.sums[VISCOUS] -= half * dot(w.rock[: c.mass.size], way)
-        if c.alpha > 0.0:
-            braked = 0.0
-            for i in range(c.mass.size):
-                braked += c.mass[i] * (s.v_before[i] + s.v[i]) * way[i]
-            s.sums[VISCOUS] += half * 0.5 * c.alpha * braked
-        absorbed, done = 0.0, 0.0
-        for k in range(c.quiet.freedom.shape[0]):
-            for a in range(dim):
-                absorbed += w.braking[k, a] * way[c.quiet.freedom[k, a]]
-        for k in range(c.driven.size):
-            done += drive[k] * way[c.driven[k]]
-        for k in range(c.fixed.size):
-            i = c.fixed[k]
-            gained = (s.v[i] - s.v_before[i]) / c.dt + 0.5 * c.alpha * (s.v[i] + s.v_before[i])
-            done += (c.mass[i] * gained - w.force[i]) * way[i]
-        s.sums[BOUNDARY] += half * absorbed
-        s.sums[WORK] += half * done
-
-    @formula
-    def record(c, s, w, out, n):
-        """Take sample n of all receivers."""
-        r = c.receivers
-        read(r.motion, s.v, None, out.velocity, n, 0.5)
-        read(r.motion, s.v_before, None, out.velocity, n, 0.5)
-        read(r.motion, s.u, None, out.displacement, n, 1.0)
-        read(r.stress, w.strained if relaxing else s.u, r.constant, out.stress, n, 1.0)
-        if damped:
-            read(r.viscous, w.rate, None, out.stress, n, 1.0)
-        read(r.inertia, s.v, None, out.stress, n, 1.0 / c.dt + 0.5 * c.alpha)
-        read(r.inertia, s.v_before, None, out.stress, n, -1.0 / c.dt + 0.5 * c.alpha)
-        if jointed:
-            read(r.traction, w.loads, r.carried, out.traction, n, 1.0)
-            if dashpots:
-                read(r.traction, w.drags, None, out.traction, n, 1.0)
-            read(r.jump, w.jump, None, out.jump, n, 1.0)
-
     def steps(c, s, w, out, drive, moves, span):
         """Take the steps first .. last - 1, with a sample at each that `stride` divides.
 
@@ -250,38 +105,155 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         setting = flush_denormals()
         c, s, w, out, drive = borrowed((c, s, w, out, drive))
         first, last, stride = span
+        dt, mass, inverse, keep, alpha = c.dt, c.mass, c.inverse, c.keep, c.alpha
+        stiffness, jumps, points, m, q, r = (
+            c.stiffness, c.jumps, c.points, c.memory, c.quiet, c.receivers
+        )  # fmt: skip
+        steady, driven, fixed, direction = c.steady, c.driven, c.fixed, c.direction
+        u, v, v_before, history, sums = s.u, s.v, s.v_before, s.history, s.sums
+        elongation, closure, braking = s.elongation, s.closure, w.braking
+        force, rate, drag, strained, rock = w.force, w.rate, w.drag, w.strained, w.rock
+        jump, moved, jump_rate, loads, drags = w.jump, w.moved, w.jump_rate, w.loads, w.drags
+        freedom, spring, own, half = q.freedom, q.stiffness, mass.size, 0.5 * dt
         for n in range(first, last):
-            elastic, spent, kept = forces(c, s, w, n % stride == 0)
-            for i in range(c.steady.size):
-                w.force[i] += c.steady[i]
-            for k in range(c.driven.size):
-                w.force[c.driven[k]] += drive[n - first, k]
+            sampled, given = n % stride == 0, drive[n - first]
+            elastic, spent, kept = 0.0, 0.0, 0.0
+
+            # Forces of rock and joints, drags apart, and what their springs store where sampled.
+            if relaxing:
+                if ledger and sampled:
+                    multiply(stiffness, u, force)
+                    elastic -= 0.5 * m.relaxed * dot(force[:own], u)
+                    for k in range(m.share.size):
+                        multiply(stiffness, elongation[k], force)
+                        elastic -= 0.5 * m.spring[k] * dot(force[:own], elongation[k])
+                    kept = elastic
+                strain(m, u, elongation, strained)
+                multiply(stiffness, strained, rock)
+                for i in range(force.size):
+                    force[i] = rock[i]
+            else:
+                multiply(stiffness, u, force)
+                if ledger and sampled:
+                    elastic = -0.5 * dot(force[:own], u)
+            if viscous:
+                for i in range(u.size):
+                    rate[i], drag[i] = 1.5 * v[i] - 0.5 * v_before[i], 0.0
+                if damped:
+                    multiply(c.damping, rate, drag)
+            if jointed:
+                times(jumps, u, jump)
+                if rated:
+                    times(jumps, v, moved)
+                    for k in range(moved.size):
+                        moved[k] *= dt
+                if dashpots:
+                    times(jumps, rate, jump_rate)
+                slid, stored, spent = tractions(
+                    points, dt, jump, moved, jump_rate, history, history, loads, drags
+                )
+                add_transposed(jumps, loads, force)
+                if dashpots:
+                    add_transposed(jumps, drags, drag)
+                elastic += stored
+                sums[FRICTION] += slid
+            if viscous:
+                for i in range(u.size):
+                    force[i] += drag[i]
+            for i in range(steady.size):
+                force[i] += steady[i]
+            for k in range(driven.size):
+                force[driven[k]] += given[k]
             if sprung:
-                press(c.quiet, s.closure, w.force)
-            move(c, s, w, moves[n - first])
-            if ledger:
-                work(c, s, w, s.v_before, drive[n - first])
-            if n % stride == 0:
-                record(c, s, w, out, n // stride)
+                for k in range(closure.shape[0]):
+                    for a in range(dim):
+                        force[freedom[k, a]] -= spring[k, a] * closure[k, a]
+
+            # Velocities half a step later: of all nodes, on dashpots of sides, and given ones.
+            for i in range(own):
+                v_before[i] = v[i]
+                v[i] = keep * v[i] + inverse[i] * force[i]
+            for k in range(freedom.shape[0]):
+                for a in range(dim):
+                    braking[k, a] = v[freedom[k, a]]
+                    for b in range(dim):
+                        braking[k, a] -= q.beta[k, a, b] * v_before[freedom[k, b]]
+                for a in range(dim):
+                    found = 0.0
+                    for b in range(dim):
+                        found += q.solve[k, a, b] * braking[k, b]
+                    v[freedom[k, a]] = found
+                for a in range(dim):
+                    braked = 0.0
+                    for b in range(dim):
+                        j = freedom[k, b]
+                        braked += q.viscosity[k, a, b] * 0.5 * (v_before[j] + v[j])
+                    if sprung:
+                        braked += spring[k, a] * closure[k, a]
+                    braking[k, a] = braked
+            for k in range(fixed.size):
+                v[fixed[k]] = direction[k] * moves[n - first] / dt
+
+            for later in range(2):  # half a step before, and after
+                way = v if later else v_before
+                if ledger:
+                    if viscous:
+                        sums[VISCOUS] -= half * dot(drag[:own], way)
+                    if relaxing:
+                        sums[VISCOUS] -= half * dot(rock[:own], way)
+                    if alpha > 0.0:
+                        braked = 0.0
+                        for i in range(own):
+                            braked += mass[i] * (v_before[i] + v[i]) * way[i]
+                        sums[VISCOUS] += half * 0.5 * alpha * braked
+                    absorbed, done = 0.0, 0.0
+                    for k in range(freedom.shape[0]):
+                        for a in range(dim):
+                            absorbed += braking[k, a] * way[freedom[k, a]]
+                    for k in range(driven.size):
+                        done += given[k] * way[driven[k]]
+                    for k in range(fixed.size):
+                        i = fixed[k]
+                        gained = (v[i] - v_before[i]) / dt + 0.5 * alpha * (v[i] + v_before[i])
+                        done += (mass[i] * gained - force[i]) * way[i]
+                    sums[BOUNDARY] += half * absorbed
+                    sums[WORK] += half * done
+                if later or not sampled:
+                    continue
+                at = n // stride
+                read(r.motion, v, None, out.velocity, at, 0.5)
+                read(r.motion, v_before, None, out.velocity, at, 0.5)
+                read(r.motion, u, None, out.displacement, at, 1.0)
+                read(r.stress, strained if relaxing else u, r.constant, out.stress, at, 1.0)
+                if damped:
+                    read(r.viscous, rate, None, out.stress, at, 1.0)
+                read(r.inertia, v, None, out.stress, at, 1.0 / dt + 0.5 * alpha)
+                read(r.inertia, v_before, None, out.stress, at, -1.0 / dt + 0.5 * alpha)
+                if jointed:
+                    read(r.traction, loads, r.carried, out.traction, at, 1.0)
+                    if dashpots:
+                        read(r.traction, drags, None, out.traction, at, 1.0)
+                    read(r.jump, jump, None, out.jump, at, 1.0)
                 if ledger:
                     kinetic = 0.0
-                    for i in range(c.mass.size):
-                        kinetic += 0.5 * c.mass[i] * s.v_before[i] * s.v[i]
-                    fallen = dot(c.steady, s.u)
-                    found = (
-                        kinetic, elastic, s.sums[VISCOUS] - kept, s.sums[FRICTION], spent,
-                        s.sums[BOUNDARY], -fallen, s.sums[WORK],
+                    for i in range(own):
+                        kinetic += 0.5 * mass[i] * v_before[i] * v[i]
+                    terms = (
+                        kinetic, elastic, sums[VISCOUS] - kept, sums[FRICTION], spent,
+                        sums[BOUNDARY], -dot(steady, u), sums[WORK],
                     )  # fmt: skip
-                    for term in range(len(found)):
-                        out.energy[term, n // stride] = found[term]
-            if ledger:
-                work(c, s, w, s.v, drive[n - first])
-            for i in range(c.mass.size):
-                s.u[i] += c.dt * s.v[i]
+                    for term in range(len(terms)):
+                        out.energy[term, at] = terms[term]
+
+            for i in range(own):
+                u[i] += dt * v[i]
             if sprung:
-                close(c.quiet, s.v, s.closure)
+                for k in range(closure.shape[0]):
+                    for a in range(dim):
+                        gained = q.gain[k, a] * v[freedom[k, a]]
+                        closure[k, a] = q.decay[k, a] * closure[k, a] + gained
             if relaxing:
-                relax(c.memory, s.v[: c.mass.size], s.elongation)
+                relax(m, v[:own], elongation)
         restore_denormals(setting)
 
     return jitted(steps, flags)

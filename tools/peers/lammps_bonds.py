@@ -138,27 +138,26 @@ def bpm_bonds(*stiffness: float) -> str:
 def data(p: Pillar, style: Style) -> str:
     """Return the data file: bodies at the blocks' centres along x, a bond at each joint."""
     n, d = p.blocks, p.spacing
-    centres = np.zeros((n, 2))
-    centres[:, 0] = (np.arange(n) + 0.5) * d
+    centres = (np.arange(n) + 0.5)[:, None] * [d, 0.0, 0.0]
     pairs = np.arange(n - 1)[:, None] + np.arange(2)
-    return bodies(style, p.mass, d, (0, n * d, -d, d), centres, pairs)
+    return bodies(style, p.mass, d, centres, pairs)
 
 
-def bodies(style: Style, mass: float, size: float, box, centres, pairs) -> str:
-    """Return the data file of bodies of one mass (kg) and diameter (m) at these centres [n, 2] in
-    a box (m: left, right, bottom, top), with bonds between pairs [bonds, 2], numbered from 0."""
-    left, right, bottom, top = (float(side) for side in box)
+def bodies(style: Style, mass: float, size: float, centres, pairs) -> str:
+    """Return the data file of bodies of one mass (kg) and diameter (m) at these centres [n, 3], m,
+    with bonds between pairs [bonds, 2], numbered from 0."""
+    box = np.stack([centres.min(axis=0) - size, centres.max(axis=0) + size], axis=1).tolist()
+    sides = "".join(f"{a!r} {b!r} {x}lo {x}hi\n" for x, (a, b) in zip("xyz", box, strict=True))
     density = float(mass / (np.pi * size**3 / 6))
     about, masses = f"{size!r} {density!r} ", ""
     if style is POINTS:
         about, masses = "", f"\nMasses\n\n1 {mass!r}\n"
     places = enumerate(centres.tolist(), 1)
-    atoms = "".join(f"{i} 1 1 {about}{x!r} {y!r} 0\n" for i, (x, y) in places)
+    atoms = "".join(f"{i} 1 1 {about}{x!r} {y!r} {z!r}\n" for i, (x, y, z) in places)
     bonds = "".join(f"{c} 1 {i + 1} {j + 1}\n" for c, (i, j) in enumerate(pairs.tolist(), 1))
     return (
         f"bodies\n\n{len(centres)} atoms\n{len(pairs)} bonds\n1 atom types\n1 bond types\n"
-        f"\n{left!r} {right!r} xlo xhi\n{bottom!r} {top!r} ylo yhi\n{-size!r} {size!r} zlo zhi\n"
-        f"{masses}\nAtoms # {style.atoms}\n\n{atoms}\nBonds\n\n{bonds}"
+        f"\n{sides}{masses}\nAtoms # {style.atoms}\n\n{atoms}\nBonds\n\n{bonds}"
     )
 
 
