@@ -1,12 +1,11 @@
-"""Chains whose joints carry no tension: those that open and close many times, against matrix
-exponentials, and those that stay closed."""
+"""Chains whose joints carry no tension: those that open and close many times, against an ODE
+solver, and those that stay closed."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-from scipy.optimize import brentq
+from scipy.integrate import solve_ivp
 
 from jointwave.cases import Scene
 from jointwave.cases.loads import load_history
@@ -61,101 +60,47 @@ def random_chain(seed, folder):
     return Scene.model_validate(table, context={"folder": folder})
 
 
-def of_modes(scene, times, finest=0.05):
-    """Return displacements and velocities [n, 2 N] of a chain by matrix exponentials, each joint
-    looked at `finest` of the highest frequency's radian apart; assembled here, from the scene.
-
-    The load is a part of the state: (s, s') with s'' = -omega^2 s, or straight pieces s'' = 0.
-    """
+def of_slopes(scene, times):
+    """Return displacements and velocities [n, 2 N] of a chain by DOP853, assembled here, from the
+    scene: its steps shrink where a joint opens or closes, and end where the load has a break."""
     p, load = calibrate(scene), load_history(scene)
-    n, m = scene.pillar.block_count, p.block_mass
-    k, half = p.stiffness * p.area, 2 * p.regular_stiffness * p.area
-    eta = np.zeros(n - 1) if p.joint_time_constant is None else p.joint_time_constant
+    k, wall = p.stiffness * p.area, 2 * p.regular_stiffness * p.area
+    eta = 0.0 if p.joint_time_constant is None else p.joint_time_constant
     pressed = (scene.prestress.normal if scene.prestress else 0.0) * p.area
-    omega = 2 * np.pi / scene.load.period if scene.load.shape == "sine" else 0.0
 
-    def matrix(closed):
-        A = np.zeros((2 * n + 3, 2 * n + 3))  # u, v, s, s', 1
-        A[:n, n : 2 * n] = np.eye(n)
-        A[n, -3] += p.area * scene.load.direction[1]
-        A[-3, -2], A[-2, -3] = 1, -(omega**2)
-        for j in range(n - 1):
-            force = np.zeros(2 * n + 3)  # of the joint on its right block, less the prestress
-            if closed[j]:
-                force[j], force[j + 1] = k[j], -k[j]
-                force[n + j], force[n + j + 1] = k[j] * eta[j], -k[j] * eta[j]
-            else:
-                force[-1] = -pressed
-            A[n + j] -= force
-            A[n + j + 1] += force
-        for kind, b in zip((scene.ends.start, scene.ends.end), (0, n - 1), strict=True):
+    def slope(t, state):
+        u, v = np.split(state, 2)
+        spring = pressed - k * np.diff(u)
+        whole = spring - k * eta * np.diff(v)
+        carries = (np.minimum(spring, whole) >= 0) | p.tension
+        push = -np.diff(np.where(carries, whole, 0.0) - pressed, prepend=0.0, append=0.0)
+        push[0] += p.area * scene.load.direction[1] * load.value(t)
+        for kind, b in ((scene.ends.start, 0), (scene.ends.end, -1)):
             if kind == "fixed":
-                A[n + b, b] -= half
-                A[n + b, n + b] -= half * (p.time_constant or 0.0)
-            if kind == "quiet":
-                A[n + b, n + b] -= p.impedance * p.area
-        A[n : 2 * n] /= m
-        return A
+                push[b] -= wall * (u[b] + (p.time_constant or 0.0) * v[b])
+            elif kind == "quiet":
+                push[b] -= p.impedance * p.area * v[b]
+        return np.append(v, push / p.block_mass)
 
-    def carries(y):
-        spring = pressed - k * np.diff(y[:n])
-        return (np.minimum(spring, spring - k * eta * np.diff(y[n : 2 * n])) >= 0) | p.tension
-
-    known = {}
-
-    def advance(closed, h):
-        key = closed.tobytes(), h
-        if key not in known:
-            known[key] = expm(matrix(closed) * h)
-        return known[key]
-
-    y, out = np.zeros(2 * n + 3), [np.zeros(2 * n)]
-    y[-1] = 1
-    closed, cuts = np.ones(n - 1, bool), {0.0, *load.breaks}
-    longest = finest * np.sqrt(m / half) / 2
-    nodes = np.unique([*times, *(c for c in cuts if c < times[-1])])
-    for a, b in pairwise(nodes):
-        if a in cuts:
-            inside = np.array([a + 1e-9 * (b - a), b - 1e-9 * (b - a)])
-            f, later = load.value(inside)
-            y[-3], y[-2] = f, (later - f) / (inside[1] - inside[0])
-            if omega:
-                y[-3], y[-2] = load.value(np.array([a]))[0], 0.0
-                if a < load.end:
-                    y[-2] = load.amplitude * omega
-        count = int(np.ceil((b - a) / longest))
-        h, done = (b - a) / count, 0.0
-        for _ in range(count):
-            while True:
-                new = advance(closed, h) @ y if done == 0 else expm(matrix(closed) * (h - done)) @ y
-                changed = np.flatnonzero(carries(new) != closed)
-                if not len(changed):
-                    break
-                A = matrix(closed)
-
-                def excess(s, joints=changed, A=A, y=y, closed=closed):
-                    return 0.5 - (carries(expm(A * s) @ y) != closed)[joints].any()
-
-                s = brentq(excess, 0, h - done, xtol=1e-14 * h) if excess(0) > 0 else 0.0
-                y, done = expm(A * s) @ y, done + s
-                later = carries(expm(A * 1e-9 * h) @ y)
-                closed = np.where(later != closed, later, closed)
-            y, done = new, 0.0
-        if b in times:
-            out.append(y[: 2 * n].copy())
-    return np.array(out)
+    rows, end = [], np.zeros(2 * scene.pillar.block_count)
+    cuts = [0.0, *(t for t in load.breaks if 0 < t < times[-1]), times[-1]]
+    for start, stop in pairwise(cuts):
+        here = np.append(times[(times >= start) & (times < stop)], stop)
+        tight = {"rtol": 1e-11, "atol": 1e-15}
+        *within, end = solve_ivp(slope, (start, stop), end, "DOP853", here, **tight).y.T
+        rows += within
+    return np.array([*rows, end])
 
 
 @pytest.mark.parametrize(
     "seed", [*range(8), *(pytest.param(s, marks=pytest.mark.slow) for s in range(8, 100))]
 )
-def test_chains_that_open_and_close_are_those_of_matrix_exponentials(seed, tmp_path):
-    """Which see every event but those that are undone within a twentieth of a radian: the impulse
-    of such a touch is below 0.05^3/12 = 1e-5 of a joint's, and grows as any small difference."""
+def test_chains_that_open_and_close_are_those_of_a_tight_ode_solver(seed, tmp_path):
+    """Its 1e-11 a step grows as any small difference, to 1e-8 of the motion."""
     scene = random_chain(seed, tmp_path)
     model, times = system_of(scene), sample_times(scene)
     states = integrate(model, drive(scene), times, scene.load.period).states
-    expected = np.split(of_modes(scene, times), 2, axis=1)
+    expected = np.split(of_slopes(scene, times), 2, axis=1)
     for matrix, motion in zip((model.displacement, model.velocity), expected, strict=True):
         assert np.linalg.norm(states @ matrix.T - motion) < 1e-6 * np.linalg.norm(motion)
 
@@ -206,16 +151,6 @@ def test_the_time_is_said_from_which_bouncing_is_chaotic(tmp_path):
     assert np.abs(error).max() > 1e-4 * np.abs(stress).max()
 
 
-def test_momentum_is_the_load_s_impulse_between_free_ends(scene):
-    tables = {"pillar": {"length": 10.0}, "record": {"stress": [5.0], "velocity": []}}
-    at = scene(**tables, joints={"tension": False}, time={"duration": 0.03})
-    model, load, times = system_of(at), load_history(at), sample_times(at)
-    velocity = integrate(model, load, times).states @ model.velocity.T
-    momentum = calibrate(at).block_mass * velocity.sum(axis=1)
-    impulse = load.impulse(times) * at.pillar.area
-    assert np.abs(momentum - impulse).max() < 1e-12 * impulse.max()
-
-
 @pytest.mark.parametrize("end", ["free", "quiet", "matched", "fixed"])
 def test_joints_pressed_beyond_the_wave_s_tension_are_linear(scene, misfit, end):
     """1 MPa and its echoes, at most twice as large, never open joints under 5 MPa: two solvers, of
@@ -223,12 +158,12 @@ def test_joints_pressed_beyond_the_wave_s_tension_are_linear(scene, misfit, end)
     rock = {"density": 2000.0, "p_speed": 1500.0, "s_speed": 600.0}
     common = {
         "ends": {"start": "free" if end == "free" else "quiet", "end": end},
-        "pillar": {"length": 15.0},
-        "segments": [{"y": [5.0, 10.0], **rock}],
+        "pillar": {"length": 9.0},
+        "segments": [{"y": [3.0, 6.0], **rock}],
         "prestress": {"normal": 5e6},
         "gravity": {"direction": [0.0, 1.0, 0.0], "static": end == "fixed"},
         "time": {"duration": 0.03},
-        "record": {"stress": [0.0, 1.0, 7.0, 15.0], "velocity": [0.25, 7.25, 14.75]},
+        "record": {"stress": [0.0, 1.0, 4.0, 9.0], "velocity": [0.25, 4.25, 8.75]},
     }
     found = row_of_blocks.solve(scene(**common, joints={"tension": False}))
     linear = row_of_blocks.solve(scene(**common))
