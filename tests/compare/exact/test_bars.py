@@ -107,16 +107,6 @@ def test_parallel_joints_transmit_as_in_closed_form(count, ratio):
     assert abs(2 * stress[0, 0]) == pytest.approx(transmission(count, 1.0, ratio), rel=1e-9)
 
 
-def test_a_damped_wave_decays_and_disperses_as_its_wavenumber():
-    """Between two receivers of a bar so long that nothing comes back: e^{-i k (y2 - y1)} with
-    k = omega / (c sqrt(1 + i omega eta)) of e^{i(omega t - k y)}."""
-    omega, eta = np.array([200.0, 2000.0]), 1e-3
-    bar = replace(ROCK, length=1e6, rocks=(RockFrom(0.0, 2400.0, 4e9, eta),))
-    stress, _ = transfer(bar, 1j * omega, np.array([3.0, 10.0]))
-    k = omega / np.sqrt(4e9 / 2400 * (1 + 1j * omega * eta))
-    assert np.allclose(stress[1] / stress[0], np.exp(-7j * k), rtol=1e-12)
-
-
 @pytest.mark.parametrize("front", [True, False])
 def test_a_step_and_a_record_arrive_as_images_say(misfit, monkeypatch, front):
     """With the part in front of the first joint apart it is round-off. Inverted as a whole, a

@@ -26,17 +26,6 @@ def test_a_gaussian_is_a_gaussian():
     np.testing.assert_allclose(amplitude, expected, atol=1e-9 * expected[0])
 
 
-def test_energy_is_the_same_over_time_and_frequency():
-    """Parseval."""
-    values = np.random.default_rng(1).normal(size=777)
-    dt = 2e-5
-    found, amplitude = spectrum(values, dt)
-    twice = np.full(len(found), 2.0)
-    twice[[0, -1]] = 1.0
-    over_frequency = found[1] * (twice * amplitude**2).sum()
-    assert over_frequency == pytest.approx(dt * (tapered(values) ** 2).sum(), rel=1e-12)
-
-
 def test_taper_leaves_nine_tenths_and_ends_in_zero():
     window = tapered(np.ones(1000))
     assert (window[:900] == 1).all()

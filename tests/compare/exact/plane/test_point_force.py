@@ -157,23 +157,6 @@ def ramp_of(duration):
 
 
 @BY_DIMENSION
-def test_symmetry_and_reciprocity(places):
-    """G_ij(x) = G_ji(-x), and a turned place and force turn the motion."""
-    t, dim = np.linspace(0, 0.04, 100), places.shape[1]
-    e = np.eye(dim)
-    x, back = (of_gaussian(e[0], sign * places, t) for sign in (1, -1))
-    other = of_gaussian(e[1], -places, t).displacement[:, 0]
-    size = np.abs(x.displacement).max()
-    np.testing.assert_allclose(x.displacement[:, 1], other, rtol=0, atol=1e-13 * size)
-    np.testing.assert_allclose(back.displacement, x.displacement, rtol=1e-12)
-    np.testing.assert_allclose(back.stress, -x.stress, rtol=1e-12)
-    Q = np.linalg.qr(np.arange(1.0, dim**2 + 1).reshape(dim, dim) ** 2)[0]
-    turned = of_gaussian(Q @ e[0], places @ Q.T, t)
-    expected = np.einsum("ij,mjt->mit", Q, x.velocity)
-    np.testing.assert_allclose(turned.velocity, expected, atol=1e-12 * np.abs(expected).max())
-
-
-@BY_DIMENSION
 @pytest.mark.parametrize("points", [16, 32])
 def test_the_error_is_bounded(monkeypatch, points, places):
     """Twice the points lie within the bound; 64 are at round-off."""
