@@ -1,8 +1,6 @@
 """Harmonic waves at one joint, at parallel ones and in layers, at any angle: boundary conditions,
 energy, the bar."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -102,39 +100,6 @@ def test_many_joints_are_the_closed_form(rock, joint, kind, degrees, count):
 
 
 @KINDS
-def test_energy_flux_sums_to_one(rock, kind):
-    """Also with evanescent P waves, which carry energy from joint to joint but not away; a dashpot
-    takes a part."""
-    rng = np.random.default_rng(7)
-    joints = [Joint(*(1e9 * 10 ** rng.uniform(0, 2, 2))) for _ in range(8)]
-    damped = [*joints[:-1], replace(joints[-1], normal_viscosity=1e6, shear_viscosity=1e6)]
-    spacings, angle = rng.uniform(0.5, 20, 7), np.linspace(-1.55, 1.55, 200)
-    c, k = (x.real for x in cosines(rock, slowness_along(rock, kind, angle)))
-    carried = np.stack([rock.p_impedance * c, rock.s_impedance * k] * 2)
-    carried = carried / carried[["P", "SV"].index(kind)]
-    for omega in (100.0, 1000.0):
-        flux = carried * np.abs(coefficients(kind, angle, omega, rock, joints, spacings)) ** 2
-        assert np.abs(flux.sum(axis=0) - 1).max() < 1e-11
-        flux = carried * np.abs(coefficients(kind, angle, omega, rock, damped, spacings)) ** 2
-        assert (flux.sum(axis=0) < 1).all()
-
-
-def test_reciprocity():
-    """Over the square roots of the waves' fluxes R and T are symmetric."""
-    rng, count = np.random.default_rng(3), 300
-    b = rng.uniform(500, 4000, count)
-    rock = ElasticRock(rng.uniform(1500, 3500, count), b * rng.uniform(1.05, 6, count), b)
-    scale = np.array([rock.p_impedance, rock.s_impedance])
-    K, eta = scale * OMEGA * 10 ** rng.uniform(-3, 3, (2, count)), scale * rng.uniform(0, 2)
-    slowness = slowness_along(rock, "P", rng.uniform(-np.pi / 2, np.pi / 2, count))
-    R, T = scattering(rock, Joint(*K, *eta), slowness, OMEGA)
-    c, k = (x.real for x in cosines(rock, slowness))
-    out = np.sqrt(np.stack([rock.p_impedance * c, rock.s_impedance * k], axis=-1))
-    for x in (out[:, :, None] * x / out[:, None, :] for x in (R, T)):
-        assert np.abs(x[:, 0, 1] - x[:, 1, 0]).max() < 1e-11
-
-
-@KINDS
 def test_no_joint_and_free_faces(kind):
     """K = inf passes everything; K = 0 is a free face (Aki & Richards, 2002, chapter 5) that passes
     nothing; both are limits."""
@@ -206,9 +171,9 @@ def test_amplitudes_in_layers_repeat_to_the_last_bit(directed):
     """Wherever in memory numpy puts what it multiplies: other arrays come and go in between."""
     rocks, joints, offsets = [SLAB, HARD, SOFT], [WELDED, Joint(8e9, 3e9)], [0.0, 6.0]
     stack = parallel_joints.stack_of(rocks, joints, "P", directed(150), directed(-20), offsets)
-    omega = np.linspace(1.0, 1e5, 5684) + 30j
+    omega = np.linspace(1.0, 1e5, 1421) + 30j
     expected, random, others = stack.layers(omega), np.random.default_rng(1), []
     for _ in range(60):
-        others = [*others[-20:], np.empty(int(random.integers(1, 60_000)))]
+        others = [*others[-20:], np.empty(int(random.integers(1, 15_000)))]
         for one, known in zip(stack.layers(omega), expected, strict=True):
             assert (one == known).all()
