@@ -147,7 +147,8 @@ def run(variant, folder, progress=None):
 def test_effects_are_measured_by_leaving_them_out_and_once(pillar, known, tmp_path, monkeypatch):
     """The ledger changes nothing; dashpots do, and shorten the step. Costs are differences."""
     fractions: list[float] = []
-    damped = "a/b", pillar(joints__damping_ratio=0.05, time__duration=0.03)
+    steps = {"numerics__continuum__scheme": "implicit", "time__duration": 0.03}
+    damped = "a/b", pillar(joints__damping_ratio=0.05, **steps)
     found = run(damped, tmp_path, fractions.append)
     by_name = found.set_index(["engine", "effect"])
     assert set(by_name.loc["dem"].index) == {"dashpots", "energy ledger"} and fractions[-1] == 1
@@ -167,15 +168,17 @@ def test_effects_are_measured_by_leaving_them_out_and_once(pillar, known, tmp_pa
     pd.testing.assert_frame_equal(found, run(damped, tmp_path))
 
 
-def test_an_effect_that_stays_has_a_reason_and_no_number(pillar, known):
-    """The wall that the load shakes; only rigid blocks have local damping."""
-    scene = pillar(ends__start="fixed", load=BASE, damping={"local": 0.1}, time__duration=0.01)
+def test_an_effect_that_stays_has_a_reason_and_no_number(known):
+    """A side that a wave enters. Rock that cannot be run, above its critical step, has no row."""
+    sides = {"bottom": "quiet", "left": "periodic", "right": "periodic"}
+    rock = {"continuum": {"step_fraction": 1.5}}
+    scene = mass(boundaries=sides, waves=[WAVE], loads=[], numerics=rock)
     point = ("a/b", scene), effects.BLOCKS
     rows = {one["effect"]: one for one in effects.timed(point, effects.measure(point))}
-    fixed, local = rows["fixed ends"], rows["local damping"]
-    assert "is the motion of a base" in fixed["reason"]
-    assert not {"ns", "share", "misfit"} & {*fixed}
-    assert local["reason"] == "" and np.isfinite(local["ns"])
+    quiet, periodic = rows["quiet sides"], rows["periodic sides"]
+    assert "waves[0] enters there" in quiet["reason"]
+    assert not {"ns", "share", "misfit"} & {*quiet}
+    assert periodic["reason"] == "" and np.isfinite(periodic["ns"])
     assert effects.measure((("a/b", scene), effects.ROCK)) == []
 
 

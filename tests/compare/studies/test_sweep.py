@@ -43,7 +43,7 @@ ENSEMBLE = ("run", RANDOM, "--variant", "", *keys(BRIEF), "--ensemble")
 @pytest.fixture
 def ensemble(once, command):
     def made(out):
-        command(*ENSEMBLE, MEMBERS, "--workers", 2, "--out", out)
+        command(*ENSEMBLE, MEMBERS, *ALONE, "--out", out)
         return out
 
     return once("ensemble of a sweep", made)

@@ -132,7 +132,9 @@ SHORT = {
     "ends__end": "quiet",
     "numerics__continuum__elements_per_block": 2,
 }
-SLIPS = {"damping_ratio": 0.02, "friction_angle": 30.0, "cohesion": 1e5}
+SLIPS = {"friction_angle": 30.0, "cohesion": 1e5}
+
+SCHEME = "numerics__continuum__scheme"
 
 #: Who solves a scene, and what is changed.
 RUNS = {
@@ -147,9 +149,9 @@ RUNS = {
     ),
     "rock of a quality factor": (
         "continuum-jointed",
-        {"rock__quality_factor": 20.0, "numerics__continuum__scheme": "explicit"},
+        {"joints": {"damping_ratio": 0.02}, "rock__quality_factor": 20.0, SCHEME: "explicit"},
     ),
-    "implicit rock": ("continuum-jointed", {"numerics__continuum__scheme": "implicit"}),
+    "implicit rock": ("continuum-jointed", {"joints": {"tension": False}, SCHEME: "implicit"}),
 }
 
 
