@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.read import load_tables
 from jointwave.compare.cli.compare import show_comparisons
 from jointwave.compare.figures.charts.propagation import curves_of, propagation
 from jointwave.compare.figures.tables import READINGS, reading_frame
@@ -15,38 +14,31 @@ from jointwave.compare.misfit.alignment import align_curve
 from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.places import Place
 
-PILLAR = {"length": 60.0, "side": 0.5, "block": 0.5}
-LOAD = {"amplitude": 1e6, "period": 0.01}
-BAR = {
-    "title": "a bar",
-    "pillar": PILLAR,
+LONG = {"pillar__length": 60.0}
+BAR = LONG | {
     "rock": {"density": 2000.0, "equivalent_modulus": 2e9, "equivalent_poisson": 0.25},
-    "load": {"shape": "sine", **LOAD},
-    "time": {"duration": 0.06},
+    "time__duration": 0.06,
     "record": {"velocity": [10.0, 30.0]},
 }
 Y = np.linspace(5.25, 20.25, 16).tolist()  # centres of blocks
 #: A damped pillar struck at its free start, until the wave is back from its end.
-ROW = {
-    "title": "a row",
-    "pillar": PILLAR,
-    "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
-    "joints": {"damping_ratio": 0.02},
-    "load": {"shape": "ricker", **LOAD},
-    "time": {"duration": 0.048},
+ROW = LONG | {
+    "joints__damping_ratio": 0.02,
+    "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01},
+    "time__duration": 0.048,
     "record": {"velocity": Y, "interval": 5e-5},
 }
 THEORY = "rigid blocks, theory"
 
 
 @pytest.fixture(scope="module")
-def bar(compared):
-    return compared(load_tables(BAR), by=("images",))[0]
+def bar(compared, pillar):
+    return compared(pillar(**BAR), by=("images",))[0]
 
 
 @pytest.fixture(scope="module")
-def row(compared):
-    return compared(load_tables(ROW))[0]
+def row(compared, pillar):
+    return compared(pillar(**ROW))[0]
 
 
 def test_a_sine_has_the_numbers_of_its_closed_forms(bar):

@@ -354,34 +354,22 @@ def test_command_reads_what_run_wrote(tmp_path, jointwave):
     assert "short.csv: compared from 0 to 0.005 s only" in said
 
 
-def test_what_symmetry_forbids_decides_nothing(tmp_path):
+def test_what_symmetry_forbids_decides_nothing(one_joint, tmp_path):
     """A P wave across a joint moves nothing along it: round-off there is no distance."""
-    of_sides = dict.fromkeys(("left", "right"), "periodic") | dict.fromkeys(
-        ("bottom", "top"), "quiet"
+    sides = dict.fromkeys(("left", "right"), "periodic") | dict.fromkeys(("bottom", "top"), "quiet")
+    tables = one_joint(
+        domain={"size": [4.0, 8.0]},
+        boundaries=sides,
+        time={"duration": 0.01},
+        numerics={"continuum": {"size": 1.0}},
+        record={"points": [[2.0, 6.0]]},
     )
-    scene = jw.load({
-        "title": "a P wave",
-        "domain": {"size": [4.0, 8.0]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10},
-        "joint_sets": [
-            {"name": "joint", "dip": 0.0, "through": [2.0, 4.0]}
-            | {"normal_stiffness": 1.6e10, "shear_stiffness": 9e9}
-        ],
-        "waves": [
-            {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker"}
-            | {"amplitude": 1e6, "period": 0.005}
-        ],
-        "boundaries": of_sides | dict.fromkeys(("bottom", "top"), "quiet"),
-        "time": {"duration": 0.01},
-        "numerics": {"continuum": {"size": 1.0}},
-        "record": {"points": [[2.0, 6.0]]},
-    })  # fmt: skip
+    tables["joint_sets"][0] |= {"dip": 0.0, "through": [2.0, 4.0]}
+    scene = jw.load(tables)
     jw.simulate(scene, "continuum-jointed").to_netcdf(tmp_path / "run.nc")
-    curves = read_curves([f"{tmp_path / 'run.nc'}"], [scene])
-    solved = jw.simulate(scene, "oblique-joint")
-    rows = measure_curves(
-        align_curve(curves[0], scene, {"oblique-joint": solved}, False), {"oblique-joint": solved}
-    )
+    (curves,) = read_curves([f"{tmp_path / 'run.nc'}"], [scene])
+    results = {"oblique-joint": jw.simulate(scene, "oblique-joint")}
+    rows = measure_curves(align_curve(curves, scene, results, False), results)
     forbidden = {"stress xy", "velocity x", "displacement x"}
     assert {row.quantity for row in rows if row.faint} == forbidden
     assert all(row.distance.misfit < 0.05 for row in rows if not row.faint)

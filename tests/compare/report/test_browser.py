@@ -59,15 +59,14 @@ OVERLAPS = """() => {
 @pytest.fixture(scope="module")
 def report(once):
     """Return the report of two quick scenes, the free pillar for 30 ms: one with variants, and the
-    same recorded by its velocities."""
+    first of them recorded by its velocities."""
 
     def made(folder):
         own, moving = folder / "short pillar.toml", folder / "moving.toml"
         text = (PAPER / "fig-03.toml").read_text(encoding="utf-8").partition("[[variants]]")[0]
         for key, value in {"duration": 0.03, "title": f'"{TITLE}"'}.items():
             text = re.sub(rf"(?m)^{key} *=.*", f"{key} = {value}", text)
-        text += '\n[[variants]]\nname = "zeta 0.05"\njoints.damping_ratio = 0.05\n'
-        own.write_text(text)
+        own.write_text(text + '\n[[variants]]\nname = "zeta 0.05"\njoints.damping_ratio = 0.05\n')
         moving.write_text(re.sub(r"stress *= .*", "velocity = [20.25]", text))
         return build(folder / "report", workers=1, scenes=[str(own), str(moving)])
 

@@ -8,48 +8,37 @@ import pytest
 
 from jointwave.cases.validate import validated
 
-JOINT = {
-    "name": "joint",
-    "dip": 25.0,
-    "through": [20.0, 15.0],
-    "normal_stiffness": 1e10,
-    "shear_stiffness": 4e9,
-}
-WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker", "amplitude": 1e6, "period": 0.005}
-TABLES = {
-    "title": "waves at joints",
-    "domain": {"size": [40.0, 30.0]},
-    "rock": {"density": 2500.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
-    "joint_sets": [JOINT],
-    "waves": [WAVE],
-    "boundaries": dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
-    "time": {"duration": 0.03},
-    "record": {"points": [[18.0, 4.0], [22.0, 27.0]], "joints": [[20.0, 15.0]], "interval": 1e-4},
-}
-
 
 @pytest.fixture(scope="session")
-def joint():
+def joint(one_joint):
     """Return a joint of 1e10 and 4e9 Pa/m through the middle with keys changed."""
-    return lambda **keys: JOINT | keys
+    (own,) = one_joint()["joint_sets"]
+    return lambda **keys: own | {"dip": 25.0, "through": [20.0, 15.0]} | keys
 
 
 @pytest.fixture(scope="session")
-def wave():
+def wave(one_joint):
     """Return a P wave upwards, a Ricker pulse of 1 MPa and 200 Hz, with keys changed."""
-    return lambda **keys: WAVE | keys
+    (own,) = one_joint()["waves"]
+    return lambda **keys: own | keys
 
 
 @pytest.fixture(scope="session")
-def rock_mass():
+def rock_mass(one_joint, joint):
     """Return rock of 2500 kg/m3 with speeds of 4898.98 and 2828.43 m/s, 40 m by 30 m, quiet all
     around, of this joint and this wave, with tables changed; None takes a key out."""
+    own = one_joint(
+        domain={"size": [40.0, 30.0]},
+        rock={"density": 2500.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
+        joint_sets=[joint()],
+        record={"points": [[18.0, 4.0], [22.0, 27.0]], "joints": [[20.0, 15.0]], "interval": 1e-4},
+    )
 
     def scene(**changes):
-        tables = deepcopy(TABLES) | deepcopy(changes)
+        tables = deepcopy(own | changes)
         for key, value in changes.items():
-            if isinstance(TABLES.get(key), dict):
-                both = TABLES[key] | value
+            if isinstance(own.get(key), dict):
+                both = own[key] | value
                 tables[key] = {k: v for k, v in both.items() if v is not None}
         return validated(tables, Path("scene.toml"), frozenset())
 

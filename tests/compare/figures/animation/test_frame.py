@@ -115,18 +115,11 @@ def test_snapshots_are_drawn_in_the_colour_of_their_stress(row, pillar, collisio
     assert 'id="row-0"' in svg and 'id="row-1"' in svg and "compression positive" in svg
 
 
-MASS = {
-    "title": "two blocks",
-    "domain": {"size": [2.0, 1.0]},
-    "rock": {"density": 2600.0, "intact_modulus": 5e10},
-    "time": {"duration": 0.01},
-    "record": {"points": [[0.5, 0.5]]},
-}
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 @pytest.fixture
-def squares():
+def squares(one_joint):
     """Two squares of 1 m, of which the right one moves by 1e-4 m along (0.6, 0.8) at 2 m/s."""
     points = np.concatenate([SQUARE, np.add(SQUARE, [1.0, 0.0])])
     along = np.zeros((2, 8, 2))
@@ -135,7 +128,8 @@ def squares():
     times = np.array([0.0, 0.01])
     taken = snapshots(times, points, "quad", cells, [0, 1], 1e-4 * along, 2.0 * along)
     reasons = {"continuum-jointed": "it has not been asked"}
-    return SceneSnapshots(load_tables(MASS), {"dem": taken}, reasons, {})
+    scene = one_joint(domain={"size": [2.0, 1.0]}, joint_sets=[], record={"points": [[0.5, 0.5]]})
+    return SceneSnapshots(load_tables(scene), {"dem": taken}, reasons, {})
 
 
 def test_cells_are_displaced_and_coloured_by_their_speed(squares):
