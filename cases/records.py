@@ -65,7 +65,7 @@ def read_history(path: Path, quantity: str, in_space: bool = False) -> Recorded:
 
     Raises ValueError, in one line, when there is nothing to read or it is not a history.
     """
-    time, rest = read_columns(path, gaps=False)
+    time, rest = read_columns(path, gaps=False, begins=False)
     if len(rest) != 1:
         names = _listed([one.name for one in (time, *rest)])
         raise ValueError(f"must hold two columns, time and load, not {1 + len(rest)}: {names}")
@@ -78,12 +78,15 @@ def read_history(path: Path, quantity: str, in_space: bool = False) -> Recorded:
     return Recorded(seconds, sign * load.si(units_of(quantity, in_space)), bool(time.unit))
 
 
-def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool = True) -> Columns:
-    """Return the columns of a text table or a seismogram, whose first sample is at t = 0.
+def read_columns(
+    path: Path, time_name: str = "time", least: int = 2, gaps: bool = True, begins: bool = True
+) -> Columns:
+    """Return the columns of a text table or a seismogram.
 
     time_name : the header of the times; without "time" it is "t", or of two columns the first.
-    least : number of samples. gaps : whether cells may be empty. Raises ValueError, in one phrase
-    with line, value and what is allowed.
+    least : number of samples. gaps : whether cells may be empty. begins : whether a seismogram does
+    at the time of its own clock, else at t = 0. Raises ValueError, in one phrase with line, value
+    and what is allowed.
     """
     content = read_bytes(path, LARGEST_FILE, SPREAD)
     where: Where
@@ -97,6 +100,7 @@ def read_columns(path: Path, time_name: str = "time", least: int = 2, gaps: bool
                 raise ValueError(f"is neither text (line {line} holds a NUL byte) {allowed}")
             seconds, traces = read_traces(content, form)
             rest = [Column(printable(name), "", values) for name, values in traces.items()]
+            seconds -= 0.0 if begins else seconds[0]
             found, where = Columns(Column("time", "s", seconds), rest), "sample {}".format
             gaps = False
         else:

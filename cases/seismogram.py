@@ -25,7 +25,8 @@ def format_of(content: bytes) -> str:
 
 
 def read_traces(content: bytes, form: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the times of a seismogram's samples from zero on [n], s, and these by channel [n].
+    """Return the times of a seismogram's samples on its own clock [n], s, from B of SAC, DELAY of
+    SEG-2 or the delay of SEG-Y on, else from zero; and the samples by channel [n].
 
     Raises ValueError, in one phrase, for gaps, and where its header contradicts itself.
     """
@@ -38,16 +39,29 @@ def read_traces(content: bytes, form: str) -> tuple[np.ndarray, dict[str, np.nda
     except Exception:  # of a dozen kinds, for a damaged file
         raise ValueError(f"cannot be read as {form}") from None
     named = {one.stats.channel or str(i): one for i, one in enumerate(traces, 1)}
-    shared = {(one.stats.delta, one.stats.npts, one.stats.starttime.ns) for one in traces}
+    every = [(one.stats, _begin(one.stats, form)) for one in traces]
+    shared = {(stats.delta, stats.npts, stats.starttime.ns, begin) for stats, begin in every}
     if len(shared) != 1 or len(named) < len(traces):
         allowed = "must hold each channel in one trace without gaps, all over the same times"
         raise ValueError(f"{allowed}; has {len(traces)} traces: {', '.join(named)[:200]}")
-    stats = traces[0].stats
+    stats, begin = every[0]
     step = _sac_step(stats.sac, stats) if form == "SAC" else float(stats.delta)
     if not step > 0:
         raise ValueError(f"must have a positive sampling interval, not {step:g} s")
     values = {name: np.asarray(one.data, dtype=float) for name, one in named.items()}
-    return step * np.arange(stats.npts), values
+    return begin + step * np.arange(stats.npts), values
+
+
+def _begin(stats: Any, form: str) -> float:
+    """Return when a trace begins on its own clock, s."""
+    match form:
+        case "SAC":
+            return stats.sac.get("b") or 0.0
+        case "SEG2":
+            return float(stats.seg2.get("DELAY", 0))
+        case "SEGY":
+            return 1e-3 * stats.segy.trace_header.delay_recording_time
+    return 0.0
 
 
 def _sac_step(header: Any, stats: Any) -> float:

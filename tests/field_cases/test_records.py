@@ -155,6 +155,9 @@ def test_a_sac_file_that_agrees_with_itself_is_read(interval, header, tmp_path):
     load = read_history(tmp_path / "a", "stress")
     assert load.timed and load.time == pytest.approx(interval * np.arange(5), rel=1e-6)
     assert load.stress.tolist() == SAMPLES
+    begin = header["b"] if "e" in header else 0.0  # of curves and recordings, not of loads
+    time = read_columns(tmp_path / "a").time.values
+    assert time == pytest.approx(begin + interval * np.arange(5), rel=1e-6)
 
 
 def traces(*data, rate=500.0, later=10.0, **stats):
