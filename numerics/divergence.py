@@ -3,8 +3,6 @@
 Speeds cannot exceed what all forces together can cause, and energy cannot increase without work.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

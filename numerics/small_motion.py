@@ -4,8 +4,6 @@ Faces that have moved by a share s of a block touch on 1 - s of what their conta
 that met nothing at the start pass through one another.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
 from typing import NamedTuple

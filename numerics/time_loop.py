@@ -4,8 +4,6 @@ Engines write no files and handle no signals. They pass their state to a keeper,
 of arrays (`results.arrays`), between intervals of steps.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any, Protocol

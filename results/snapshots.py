@@ -1,7 +1,5 @@
 """Snapshots of the whole body, the common form of field results, and their storage in results."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -49,7 +47,7 @@ class Snapshots(NamedTuple):
     velocity: np.ndarray
     stress: np.ndarray | None
 
-    def since(self, first: int) -> Snapshots:
+    def since(self, first: int) -> "Snapshots":
         """Return the snapshots without those before the `first`."""
         over_time = {name: getattr(self, name) for name in ("time", *OVER_TIME)}
         return self._replace(**{k: v[first:] for k, v in over_time.items() if v is not None})
@@ -96,7 +94,11 @@ class SnapshotRecorder:
         if not self.scene.is_column:
             u, slip = u - u[0], slip - slip[0]
         found = with_snapshots(result, snapshots(time, *self.body, u, v, stress))
-        return found if self.joints is None else with_slip(found, in_space(self.joints), slip)
+        if self.joints is None:
+            return found
+        ends, over_time = ("joint", "end", "component"), ("field_time", "joint")
+        slips = {"field_joints": (ends, in_space(self.joints)), "field_slip": (over_time, slip)}
+        return found.assign(labelled(slips))
 
 
 def samples_between(scene: AnyScene) -> int | None:
@@ -152,18 +154,6 @@ def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
     found = result.assign(labelled(variables)).assign_coords(labelled(coords))
     found["field_cells"].attrs["kind"] = s.kind
     return found
-
-
-def with_slip(result: xr.Dataset, joints: np.ndarray, slip: np.ndarray) -> xr.Dataset:
-    """Return a result with the slip (m) of joints at its snapshots [snapshots, joints].
-
-    joints : ends [joints, 2, 3], m.
-    """
-    variables = {
-        "field_joints": (("joint", "end", "component"), joints),
-        "field_slip": (("field_time", "joint"), slip),
-    }
-    return result.assign(labelled(variables))
 
 
 def snapshots_of(result: xr.Dataset) -> Snapshots | None:

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from jointwave.compare.engines import in_order, label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading
+from jointwave.compare.figures.export import chart, set_heading
 from jointwave.compare.figures.style import UNITS, style
 from jointwave.compare.misfit.places import Place, waveforms
 

@@ -9,12 +9,12 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from math import inf
 from pathlib import Path
-from time import sleep
+from time import monotonic, sleep
 from typing import Any, NoReturn, TextIO, TypeVar
 
 from jointwave.cases.errors import SceneError
-from jointwave.numerics.mpi_barrier import arrive
 
 #: Number of processes, as set by launchers: Open MPI, MPICH and its relatives, MVAPICH.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
@@ -23,6 +23,8 @@ STARTED = "PMIX_RANK"
 
 PATIENCE = 5.0  # s: a failure common to all processes occurs at nearly the same time
 GRACE = 0.5  # s: an aborted job may lose output that its launcher has not forwarded yet
+READY = 1e-3  # s, after which a process that waits sleeps: a balanced run waits less
+SHARE, LONGEST = 0.1, 0.01  # of each sleep: of the time waited so far, and s at most
 
 T = TypeVar("T")
 
@@ -104,6 +106,23 @@ def _tried(work: Callable[[], T]) -> tuple[T | None, Exception | None]:
         return work(), None
     except Exception as error:
         return None, error
+
+
+def arrive(comm: Any, patience: float = inf) -> bool:
+    """Wait until all processes of mpi4py's communicator have called this, and return whether they
+    do so within `patience` (s).
+
+    For long waits, where one process compiles, partitions or runs for all: MPI's own barrier spins,
+    and takes a core from the process that it waits for.
+    """
+    began, request = monotonic(), comm.Ibarrier()
+    while not request.Test():
+        waited = monotonic() - began
+        if waited > patience:
+            return False
+        if waited > READY:
+            sleep(min(SHARE * waited, LONGEST))
+    return True
 
 
 ALONE = Processes()

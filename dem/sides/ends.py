@@ -6,8 +6,6 @@ end is a wall, a contact of `blocks.pillar`; the dashpots of the half block befo
 they see the mean velocity of both half steps like all that are beyond the pillar.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks

@@ -1,7 +1,5 @@
 """External forces on blocks, in any dimension, step by step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

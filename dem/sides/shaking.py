@@ -1,7 +1,5 @@
 """The motion of walls that move as a base, in any dimension."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Surroundings of blocks in any dimension: forces, dashpots and moving bases on ends and sides."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -62,7 +60,7 @@ class Surroundings(NamedTuple):
     bases: list[Base]
     springs: tuple[EndSpring, ...] = ()
     opened: Pattern | None = None
-    waves: Callable[[IncidentField | None, np.ndarray, Clock], list[Source]] | None = None
+    waves: "Callable[[IncidentField | None, np.ndarray, Clock], list[Source]] | None" = None
 
     @property
     def rows(self) -> np.ndarray:

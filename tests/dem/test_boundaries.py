@@ -24,9 +24,8 @@ from jointwave.dem.sides.boundaries import (
     points_on,
     resultants,
 )
-from jointwave.dem.sides.domain import load_pattern
+from jointwave.dem.sides.domain import incoming, load_pattern
 from jointwave.dem.sides.loads import Loads
-from jointwave.dem.sides.waves import incoming
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")

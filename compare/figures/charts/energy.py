@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 
 from jointwave.compare.engines import ENGINES, in_order, label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.export import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, chart, set_heading
 from jointwave.compare.figures.receivers import named
 from jointwave.compare.figures.style import TERMS, style, unit_for
 from jointwave.compare.misfit.pairs import Comparison

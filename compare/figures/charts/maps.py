@@ -19,9 +19,8 @@ from jointwave.compare.engines import in_order
 from jointwave.compare.figures.animation.bodies import colours_of
 from jointwave.compare.figures.animation.snapshots import SLIP
 from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_of
-from jointwave.compare.figures.charts.axes import LETTER
 from jointwave.compare.figures.drawing.sketch import MANY, ROCKS
-from jointwave.compare.figures.export import SceneFigure, blank
+from jointwave.compare.figures.export import LETTER, SceneFigure, blank
 from jointwave.compare.figures.receivers import named
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
 from jointwave.compare.misfit.pairs import Comparison

@@ -13,8 +13,7 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import in_order, label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.export import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, chart, set_heading
 from jointwave.compare.figures.receivers import named, table_of
 from jointwave.compare.figures.style import style
 from jointwave.compare.misfit.pairs import Comparison

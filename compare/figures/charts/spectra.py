@@ -11,8 +11,7 @@ from matplotlib.ticker import NullLocator
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.compare.engines import label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.export import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, chart, set_heading
 from jointwave.compare.figures.receivers import Panel, in_rows, table_of
 from jointwave.compare.figures.style import DRAWN, GREY, style
 from jointwave.compare.misfit.pairs import Comparison

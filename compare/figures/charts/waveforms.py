@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 
 from jointwave.cases.errors import require
 from jointwave.compare.engines import ENGINES, in_order, label_of
-from jointwave.compare.figures.charts.axes import chart, set_heading
-from jointwave.compare.figures.export import SceneFigure
+from jointwave.compare.figures.export import SceneFigure, chart, set_heading
 from jointwave.compare.figures.receivers import Panel, curve_table, in_rows, panels
 from jointwave.compare.figures.style import (
     DRAWN,
