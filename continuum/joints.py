@@ -1,7 +1,5 @@
 """The joints of a pillar that a model resolves."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

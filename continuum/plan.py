@@ -1,7 +1,5 @@
 """A run before its first step: the body of a scene, what acts on it, and how it is stepped."""
 
-from __future__ import annotations
-
 import logging
 from math import ceil
 from typing import Any, NamedTuple

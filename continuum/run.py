@@ -1,7 +1,5 @@
 """From a scene to its result by the dolfinx body."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from time import perf_counter

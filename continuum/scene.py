@@ -1,7 +1,5 @@
 """The body of a scene: a rock mass in the plane or in space, or a pillar."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple

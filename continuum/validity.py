@@ -1,18 +1,15 @@
 """Scenes that a dolfinx body can simulate, and the reasons why not others."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.law_parts import PARTS
+from jointwave.cases.schema.law_parts import PARTS, UNLIMITED
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.continuum.joints import resolved_joints
-from jointwave.joints.shear import UNLIMITED
 
 MODELS = ("jointed", "equivalent")
 #: Keys of a joint set that the effective medium does not support.

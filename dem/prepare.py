@@ -1,7 +1,5 @@
 """From a scene to blocks ready to run."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +32,7 @@ if TYPE_CHECKING:
 OF_BLOCK, OF_POINT = {1: 500, 2: 2000, 3: 2000}, 60
 
 
-def prepared(scene: AnyScene, incident: IncidentField | None = None) -> BlockSystem:
+def prepared(scene: AnyScene, incident: "IncidentField | None" = None) -> BlockSystem:
     """Return a scene ready to run; raises SceneError if it cannot run.
 
     incident : the field of waves that quiet sides take in; absent: that of the scene's waves in
@@ -90,7 +88,7 @@ def clock_of(blocks: RigidBlocks) -> Clock:
 
 
 def loads_of(
-    blocks: RigidBlocks, time: Clock, moving: Shaking | None, incident: IncidentField | None
+    blocks: RigidBlocks, time: Clock, moving: Shaking | None, incident: "IncidentField | None"
 ) -> tuple[Loads, np.ndarray, np.ndarray]:
     """Return the external forces on blocks, the resistance of the dashpots there, as
     `boundaries.dashpots` has it, then that of unit dashpots where they bear the weight."""

@@ -11,8 +11,6 @@ some ln(1 / tolerance) / (omega dt) steps. Underwood, Dynamic relaxation, in: Co
 for Transient Analysis (1983).
 """
 
-from __future__ import annotations
-
 from math import ceil, sqrt
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Simulation by rigid blocks: the run of a rock mass or of a pillar, from its scene to a result."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from functools import partial
@@ -42,7 +40,7 @@ def simulate(
     scene: AnyScene,
     progress: Callable[[float], None] | None = None,
     keeper: Checkpointer | None = None,
-    incident: IncidentField | None = None,
+    incident: "IncidentField | None" = None,
 ) -> xr.Dataset:
     """Simulate a scene with rigid blocks, with the degrees of freedom that it needs.
 

@@ -4,8 +4,6 @@ A k-cell is the list of the (k-1)-cells that bound it. Each exists once, for all
 bounds: whatever is cut, removed or joined, volumes add up and an inner facet belongs to two cells.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -172,7 +170,7 @@ class Complex:
         np.minimum.at(depth, half.cell, self.places(half) - half.outward @ point)
         return np.where(np.isinf(depth), -np.inf, depth)
 
-    def removed(self, cells: np.ndarray, side: int) -> Complex:
+    def removed(self, cells: np.ndarray, side: int) -> "Complex":
         """Return the complex without some cells (bool array [count]), whose facets to other cells
         become the boundary `side`."""
         was = np.append(cells, False)[self.sides]  # the last stands for OUTSIDE
@@ -182,11 +180,11 @@ class Complex:
             side=np.where(was.any(axis=1), side, self.side),
         )._without_inner()
 
-    def joined(self, root: np.ndarray) -> Complex:
+    def joined(self, root: np.ndarray) -> "Complex":
         """Return the complex with its cells joined to others: root, int array [count]."""
         return replace(self, sides=np.append(root, OUTSIDE)[self.sides])._without_inner()
 
-    def _without_inner(self) -> Complex:
+    def _without_inner(self) -> "Complex":
         """Return the complex without facets that have the same on both sides."""
         held = self.sides[:, 0] != self.sides[:, 1]
         bounds = self.bounds

@@ -1,7 +1,5 @@
 """The distances between the solutions of a scene, pair by pair."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
@@ -110,7 +108,7 @@ class Comparison:
 
 
 def measure(
-    results: dict[str, xr.Dataset], spectral: bool = False, scene: AnyScene | None = None
+    results: dict[str, xr.Dataset], spectral: bool = False, scene: "AnyScene | None" = None
 ) -> list[Row]:
     """Return the distances of every available pair, for every waveform that both have.
 

@@ -5,8 +5,6 @@ Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY
 those of each joint set.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from itertools import product
@@ -36,7 +34,7 @@ class Case(NamedTuple):
 
     settings: dict[str, Any]
     folder: Path | None
-    scene: AnyScene | None
+    scene: "AnyScene | None"
     message: str = ""
 
     @property

@@ -1,7 +1,5 @@
 """The rigid blocks of a pillar: of length alone where all motion is along it, else in space."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar

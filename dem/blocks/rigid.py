@@ -1,7 +1,5 @@
 """Rigid blocks and the constants of their steps."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Rigid blocks of a rock mass from its scene."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar

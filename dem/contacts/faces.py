@@ -1,7 +1,5 @@
 """Contacts between blocks, across periodic sides, and with walls, in any dimension."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -36,7 +34,7 @@ class Contacts(NamedTuple):
     walls: tuple[str, ...] = ()
     outlines: Any = None
 
-    def some(self, rows: np.ndarray) -> Contacts:
+    def some(self, rows: np.ndarray) -> "Contacts":
         """Return some of the contacts, without their outlines."""
         kept = (None if one is None else one[rows] for one in self[:-2])
         return Contacts._make([*kept, self.walls, None])

@@ -1,7 +1,5 @@
 """The law of contacts in columns, and the points of contacts by the rule of each column."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple

@@ -17,8 +17,6 @@ take the mean velocity of a step and change no bound, nor does mass-proportional
 damping alpha makes forces that turn a velocity round 1 + alpha times as large.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -7,8 +7,6 @@ or a joint has too few of these: the next ones, which point as it does, count to
 neighbours are beyond joints, the block moves as it is: u + phi x r, with its mean stress.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

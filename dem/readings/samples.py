@@ -1,7 +1,5 @@
 """Samples of blocks as they are read: velocities, rotations, and what acts from outside."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from jointwave.dem.blocks.rigid import RigidBlocks

@@ -1,7 +1,5 @@
 """Receivers of a pillar: stress at sections, motion at points, fragments between broken joints."""
 
-from __future__ import annotations
-
 import json
 from typing import Any, NamedTuple
 
@@ -30,7 +28,7 @@ class Sections(NamedTuple):
     places: np.ndarray
     watched: np.ndarray
 
-    def of_all(self, blocks: RigidBlocks) -> Sections:
+    def of_all(self, blocks: RigidBlocks) -> "Sections":
         """Return receivers at all contacts and blocks."""
         nodes = np.arange(blocks.count + 1)
         everywhere = Interpolation(nodes, nodes, np.zeros(len(nodes)))

@@ -1,7 +1,5 @@
 """Snapshots of rigid blocks: bodies whose corners move with the blocks."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

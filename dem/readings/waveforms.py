@@ -13,8 +13,6 @@ the traction over the face about its centre, by axes in the face and then compon
 opening and slips [d]. Blocks that do not rotate have no such moments.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -32,7 +30,7 @@ from jointwave.results.stress import stress_components
 class PointsAndJoints(Receivers):
     """Receivers of a rock mass."""
 
-    def of_all(self, blocks: Any) -> PointsAndJoints:
+    def of_all(self, blocks: Any) -> "PointsAndJoints":
         """Return receivers of all blocks and contacts."""
         return PointsAndJoints(*everywhere(blocks.cut, blocks.contacts))
 
