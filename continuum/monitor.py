@@ -1,7 +1,5 @@
 """The monitor of a run, which stops it where speeds, energy or motion exceed their bounds."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from jointwave.cases.geometry.periodic import of_all
@@ -77,7 +75,7 @@ class Monitor:
             if period is not None:  # no pulse is missed
                 apart = max(1, min(apart, int(period / (IN_PERIOD * time.dt))))
             pushed = problem.forces.impulse(mass, time.steps, apart)
-        if problem.held is not None and problem.held.moved is not None:
+        if problem.held.moved is not None:
             moved = problem.held.moved(np.arange(time.steps + 1)) / time.dt
             speed = np.diff(moved, prepend=0.0, append=0.0)
             shaken = np.abs(speed).sum() * np.sqrt(mass.sum())
@@ -100,7 +98,7 @@ class Monitor:
         softest = min(np.linalg.eigvalsh(one.stiffness).min() for one in self.found.materials)
         softest *= 1.0 if problem.mechanisms is None else problem.mechanisms.relaxed
         stored = float((stress**2).sum()) / softest * float(self.found.blocks.volume.sum())
-        if joints is None or law is None:
+        if law is None:
             return float(np.sqrt(stored))
         size, area = float(np.abs(stress).max()), float(joints.weight.sum())
         springs = [k for k in (law.normal_stiffness, law.shear_stiffness) if k is not None]
@@ -113,7 +111,7 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
     displacements u [freedoms] (m); along the axis of a pillar faces may part by any distance. None
     without such a joint."""
     body, scene, joints = found.body, found.scene, found.body.joints
-    if joints is None or not joints.weight.size:
+    if not joints.weight.size:
         return None
     jump = joints.jumps(u)
     if scene.is_column:

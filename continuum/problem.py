@@ -1,7 +1,5 @@
 """From a scene to a body and what acts on it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -31,7 +29,7 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
     """Return a body with the law of its joints, a column for each contact of a rock mass and for
     each joint of a pillar that is resolved; None without joints."""
     scene, body, joints = found.scene, found.body, found.body.joints
-    if joints is None:
+    if not len(joints.weight):
         return body, None
     if scene.is_column:
         p, shears = calibrate(scene), body.components > 1

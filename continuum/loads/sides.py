@@ -19,7 +19,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.evaluation import nodes_of_cells
 from jointwave.continuum.space.model import Body, Facets, at_nodes, directions
-from jointwave.continuum.stepping.problem import Dashpots, Held
+from jointwave.continuum.stepping.problem import NO_DASHPOTS, Dashpots, Held
 from jointwave.joints.ends import HalfSpring, half_spring
 
 INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
@@ -76,12 +76,11 @@ def impedances_of(
 
 def quiet_sides(
     scene: AnyScene, body: Body, model: str = "jointed", other: Rocks | None = None
-) -> Dashpots | None:
-    """Return the dashpots of sides that absorb waves, None without any; other : of
-    `impedances_of`."""
+) -> Dashpots:
+    """Return the dashpots of sides that absorb waves; other : of `impedances_of`."""
     facets = absorbing(scene, body)
     if not len(facets.node):
-        return None
+        return NO_DASHPOTS
     tensors = impedances_of(scene, body, facets, other)
     if model == "jointed" and scene.boundaries.sides("matched"):
         return _matched(scene, facets, np.einsum("nii->ni", tensors))
@@ -114,9 +113,9 @@ def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
     return at_nodes(facets.node, tensors, body.mass.size) if tensors.any() else None
 
 
-def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held | None:
+def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held:
     """Return the freedoms of fixed sides, with the motion of one that is shaken, and those normal
-    to roller sides; None without any."""
+    to roller sides."""
     base: Any = next(iter(scene.bases), None)
     dim, direction = body.components, np.full(body.stiffness.shape[0], np.nan)
     for name in scene.boundaries.sides("fixed", "roller"):
@@ -128,10 +127,7 @@ def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held |
         for c in [AXIS[dim][name]] if rolls else range(dim):
             of = dim * node + c
             direction[of] = np.where(np.isnan(direction[of]) | shaken, given[c], direction[of])
-    freedom = np.flatnonzero(~np.isnan(direction))
-    if not freedom.size:
-        return None
-    steps = None
+    freedom, steps = np.flatnonzero(~np.isnan(direction)), None
     if base is not None and time is not None:
         steps = base_steps(base, time.dt, time.steps + time.stride + 1).__getitem__
     return Held(freedom, direction[freedom], steps)

@@ -7,8 +7,6 @@ PETSc's star forest. Nothing is summed over processes but what is recorded, once
 A point that several processes need is found by each from the same numbers in the same order.
 """
 
-from __future__ import annotations
-
 from zlib import crc32
 
 import numpy as np

@@ -63,6 +63,4 @@ def adjacent_cells(body: Body) -> np.ndarray:
         one[body.tied] = at
         pairs.append(np.stack([at, one[body.tied]]))
         at = one
-    if body.joints is not None:
-        pairs.append(at[body.joints.node.T])
-    return np.concatenate(pairs, axis=1)
+    return np.concatenate([*pairs, at[body.joints.node.T]], axis=1)

@@ -1,8 +1,6 @@
 """A process's share of a problem: complete rows of the matrices for the freedoms that it steps, the
 halo, freedoms of others that these rows need, and all points of joints that act on its freedoms."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,14 +44,10 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
     """Return the share of a process; rank_of : int array [nodes], of each node."""
     body, dim = problem.body, problem.body.components
     own, (points, counted) = np.flatnonzero(rank_of == rank), _points(problem, rank_of, rank)
-    rows, joints = _freedoms(own, dim), body.joints
-    if joints is not None:
-        joints = JumpOperator(*(one[points] for one in joints))
-    found = body.stiffness, body.damping
-    matrices = [None if one is None else csr_matrix(one)[rows] for one in found]
-    every = [one.indices // dim for one in matrices if one is not None]
-    every += [joints.node.ravel()] if joints is not None else []
-    halo = np.setdiff1d(np.concatenate(every), own)
+    rows, joints = _freedoms(own, dim), JumpOperator(*(one[points] for one in body.joints))
+    matrices = [csr_matrix(one)[rows] for one in (body.stiffness, body.damping)]
+    every = [one.indices // dim for one in matrices]
+    halo = np.setdiff1d(np.concatenate([*every, joints.node.ravel()]), own)
     number = np.full(len(rank_of), -1)
     number[np.append(own, halo)] = np.arange(len(own) + len(halo))
     freedom = np.where(number[:, None] < 0, -1, dim * number[:, None] + np.arange(dim)).ravel()
@@ -63,7 +57,7 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
         entries = matrix.data, freedom[matrix.indices], matrix.indptr
         return csr_matrix(entries, (matrix.shape[0], dim * (len(own) + len(halo))))
 
-    stiffness, damping = (None if one is None else local(one).sorted_indices() for one in matrices)
+    stiffness, damping = (local(one).sorted_indices() for one in matrices)
     small = body._replace(
         mesh=None,
         space=None,
@@ -71,9 +65,9 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
         x=body.x[own],
         block=np.unique(blocks_of_nodes(body)[own], return_inverse=True)[1],
         mass=body.mass[rows],
-        stiffness=stiffness,  # type: ignore[arg-type]
+        stiffness=stiffness,
         damping=damping,
-        joints=joints and joints._replace(node=number[joints.node]),
+        joints=joints._replace(node=number[joints.node]),
         sides={},
     )
     number[halo] = freedom[_freedoms(halo, dim)] = -1
@@ -90,8 +84,6 @@ def _freedoms(nodes: np.ndarray, dim: int) -> np.ndarray:
 def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarray, int]:
     """Return the points that act on nodes of a process, first those that have no node of a lower
     one, and how many these are."""
-    if problem.body.joints is None:
-        return np.zeros(0, np.int64), 0
     ranks = rank_of[problem.body.joints.node]
     acts, counts = (ranks == rank).any(axis=1), ranks.min(axis=1) == rank
     first = np.flatnonzero(acts & counts)
@@ -102,22 +94,17 @@ def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Proble
     """Return a problem with what acts on nodes of a process; number, freedom : those of nodes and
     freedoms in its share, -1 of others."""
     quiet, held, forces, steady = problem.quiet, problem.held, problem.forces, problem.steady
-    if quiet is not None:
-        there, springs = number[quiet.node] >= 0, quiet.springs
+    there, springs, own = number[quiet.node] >= 0, quiet.springs, freedom[held.freedom] >= 0
 
-        def some(dt: float) -> HalfSpring:
-            assert springs is not None
-            return HalfSpring(*(one[there] for one in springs(dt)))
+    def some(dt: float) -> HalfSpring:
+        assert springs is not None
+        return HalfSpring(*(one[there] for one in springs(dt)))
 
-        nodes = number[quiet.node[there]]
-        quiet = Dashpots(nodes, quiet.viscosity[there], None if springs is None else some)
-    if held is not None:
-        own = freedom[held.freedom] >= 0
-        held = held._replace(freedom=freedom[held.freedom[own]], direction=held.direction[own])
+    nodes = number[quiet.node[there]]
     return problem._replace(
         steady=None if steady is None else steady[freedom >= 0],
-        quiet=quiet,
-        held=held,
+        quiet=Dashpots(nodes, quiet.viscosity[there], None if springs is None else some),
+        held=held._replace(freedom=freedom[held.freedom[own]], direction=held.direction[own]),
         forces=None if forces is None else SomeForces(forces, freedom),
     )
 

@@ -43,7 +43,7 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
     (at, share, motion), pairs = read_at(body, points), stress_components(dim).values()
     constant, carried = np.zeros((len(points), len(pairs))), np.zeros((len(joints), dim))
     read, area = csr_matrix((0, 0)), np.zeros(0)
-    if body.joints is not None and len(body.joints.weight):
+    if len(body.joints.weight):
         area, each = np.repeat(body.joints.weight, dim), np.arange(len(body.joints.weight) + 1)
         turned = bsr_matrix((upwards(body.joints.frame).swapaxes(1, 2), each[:-1], each))
         nearest = csr_matrix(nearest_points(found, body.joints, joints))
@@ -51,8 +51,7 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
         read.eliminate_zeros()
     if stress is not None:
         constant[:] = [stress[i, j] for i, j in pairs]
-        if body.joints is not None:
-            carried = read @ body.joints.carried(stress)
+        carried = read @ body.joints.carried(stress)
     recovered, viscous = _recovered(found, points, at, share)
     return Readings(
         motion=motion,

@@ -54,7 +54,7 @@ def readings_of_pillar(scene: Scene, found: SceneBody, stress: np.ndarray | None
         traction=force.contact / area,
         carried=np.zeros(force.contact.shape[0]),
         jump=csr_matrix((0, force.contact.shape[1])),
-        viscous=None if body.damping is None else force.viscous / area,
+        viscous=force.viscous / area,
         inertia=force.inertia / area,
     )
 
@@ -110,8 +110,6 @@ def sections(found: SceneBody, places: list[float]) -> Sections:
 def on_joint(body: Body, y: float) -> np.ndarray:
     """Return which points of joints a section at y is on, bool [points]: none where they do not
     cover it, as those of an inclined joint."""
-    if body.joints is None:
-        return np.zeros(0, bool)
     along, extent = axis_of(body), np.ptp(compat.cell_corners(body.mesh), axis=(0, 1))
     on = np.abs(body.joints.place[:, along] - y) <= NEAR * extent[along]
     covered = body.joints.weight[on].sum() / np.delete(extent, along).prod()
@@ -121,8 +119,6 @@ def on_joint(body: Body, y: float) -> np.ndarray:
 def _contact(body: Body, on: np.ndarray) -> csr_matrix:
     """Return the sum of the forces of points of joints, along y, x and z [d, points d]."""
     size = body.components
-    if body.joints is None:
-        return csr_matrix((size, 0))
     turned = body.joints.frame.transpose(0, 2, 1)[:, along_first(body)]
     weights = on[:, None, None] * turned
     return csr_matrix(weights.transpose(1, 0, 2).reshape(size, -1))
@@ -156,10 +152,7 @@ def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_mat
     strained[nodes[layer]] = 1.0
     directions = np.eye(body.components)[along_first(body)]
     w, in_layer = kron(csr_matrix(moves), directions), diags(np.repeat(strained, body.components))
-    elastic, viscous = (
-        csr_matrix((w @ one if one is not None else 0 * w) @ in_layer)
-        for one in (body.stiffness, body.damping)
-    )
+    elastic, viscous = (csr_matrix(w @ one @ in_layer) for one in (body.stiffness, body.damping))
 
     levels = np.sort(compat.reference("interval", order).points[:, 0])
     running = poly.polyint(poly.polyfit(levels, np.eye(levels.size), order))

@@ -1,7 +1,5 @@
 """Snapshots of a body: its nodes, and linear cells between them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from jointwave.cases.material.calibrate import calibrate

@@ -112,7 +112,7 @@ class Elements:
         if self.tied is not None:
             own = (self.size * self.tied[:, None] + np.arange(self.size)).ravel()
             motion = csr_matrix((np.ones(own.size), (np.arange(own.size), own)))
-            forms = [None if one is None else csr_matrix(motion.T @ one @ motion) for one in forms]
+            forms = [csr_matrix(motion.T @ one @ motion) for one in forms]
             x = x[np.unique(self.tied, return_index=True)[1]]
         mass, stiffness, damping = forms
         return Body(
@@ -129,7 +129,7 @@ class Elements:
             sides=self._sides(),
         )
 
-    def _joints(self) -> JumpOperator | None:
+    def _joints(self) -> JumpOperator:
         """Return the jump operator of joints, those across periodic sides last."""
         first = np.argsort(self.mesh.block[self.pairs.cell], axis=1, kind="stable")
         pairs = Places(*(np.take_along_axis(part, first, 1) for part in self.pairs))
@@ -138,7 +138,8 @@ class Elements:
             parts.append((one.pairs.of(one.joint), one.vertices, one.column[one.joint]))
         parts = [one for one in parts if len(one[2])]
         if not parts:
-            return None
+            none, frame = np.zeros((0, 2), np.int64), np.zeros((0, self.size, self.size))
+            return JumpOperator(none, np.zeros(0), none[:, 0], frame, self.x[:0])
         i, j = (
             Trace(*map(np.concatenate, zip(*side, strict=True)))
             for side in zip(*(self._both(*one[:2]) for one in parts), strict=True)
@@ -175,12 +176,12 @@ def _marked(marks: np.ndarray, facet: np.ndarray) -> np.ndarray:
 
 
 def assembled(forms: Forms, kind: str, order: int) -> list[Any]:
-    """Return the matrices of mass, stiffness and damping (None without), assembled by dolfinx."""
+    """Return the matrices of mass, stiffness and damping (without entries where there is none),
+    assembled by dolfinx."""
     rules = nodal_rule(kind, order), rock_rule(kind, order), rock_rule(kind, order)
-    return [
-        None if form is None else without_round_off(matrix(by_rule(form, rule)))
-        for form, rule in zip(forms, rules, strict=True)
-    ]
+    both = [one for one in zip(forms, rules, strict=True) if one[0] is not None]
+    found = [without_round_off(matrix(by_rule(*one))) for one in both]
+    return [*found, csr_matrix(found[0].shape)][: len(forms)]
 
 
 def without_round_off(matrix: csr_matrix) -> csr_matrix:

@@ -93,8 +93,8 @@ class Body(NamedTuple):
     the space], the node of the body that each is; None where these are the same, but for rock that
     is whole across periodic sides.
     x : float array [nodes, d], m. block : int array [cells], of the partition. mass : float array
-    [freedoms], the diagonal, kg. stiffness : N/m, and damping, N s/m (None without) : [freedoms,
-    freedoms]. joints : None where none is resolved. sides : by name.
+    [freedoms], the diagonal, kg. stiffness : N/m, and damping, N s/m (without entries where there
+    is none) : [freedoms, freedoms]. joints : of no points where none is resolved. sides : by name.
 
     A process's share of a body (`continuum.processes.share`) has the rows of its freedoms, which
     are the first, and columns of those of others that these need; `block` is of its nodes, and
@@ -109,8 +109,8 @@ class Body(NamedTuple):
     block: np.ndarray
     mass: np.ndarray
     stiffness: csr_matrix
-    damping: csr_matrix | None
-    joints: JumpOperator | None
+    damping: csr_matrix
+    joints: JumpOperator
     sides: dict[str, Facets]
 
     @property

@@ -1,7 +1,5 @@
 """The forces of a body in any state, and how they resist its motion, for Newton's method."""
 
-from __future__ import annotations
-
 from functools import cache, partial
 from typing import NamedTuple
 
@@ -60,18 +58,16 @@ class Balance:
     """
 
     def __init__(self, problem: Problem) -> None:
-        body, quiet = problem.body, problem.dashpots
+        body, quiet = problem.body, problem.quiet
         self.problem, self.parts = problem, problem.parts
         n, self.dim = body.stiffness.shape[0], body.components
-        self.free = np.setdiff1d(np.arange(n), problem.fixed)
+        self.free = np.setdiff1d(np.arange(n), problem.held.freedom)
         self.stiffness, self.mass, self.points = body.stiffness, body.mass, problem.points()
-        self.damping = csr_matrix(problem.alpha * diags(body.mass))
-        if body.damping is not None:
-            self.damping = csr_matrix(self.damping + body.damping)
+        self.damping = csr_matrix(problem.alpha * diags(body.mass) + body.damping)
         self.quiet = at_nodes(quiet.node, quiet.viscosity, n)
         self.springs = cache(quiet.springs) if quiet.springs else None
         self.ends, self.memory = quiet.freedom, cache(partial(memory_of, problem.mechanisms))
-        self.jumps = csr_matrix((0, n)) if body.joints is None else body.joints.matrix(n)
+        self.jumps = body.joints.matrix(n)
         history = np.zeros((0, 0))
         if self.parts is not None:
             history = history_at_rest(self.points, self.parts, self.dim)

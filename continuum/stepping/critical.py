@@ -16,7 +16,7 @@ ROUNDS = 20
 def critical_step(
     mass: np.ndarray,
     stiffness: csr_matrix,
-    viscosity: csr_matrix | None,
+    viscosity: csr_matrix,
     fixed: np.ndarray,
     start: np.ndarray | None = None,
 ) -> float:
@@ -27,8 +27,8 @@ def critical_step(
     step this is a quadratic equation for the next, which converges quadratically, as Rayleigh's
     quotient is stationary. Quiet sides do not bound the step.
 
-    mass [n], kg; stiffness, N/m; viscosity, N s/m, None without. fixed : int array, freedoms whose
-    motion is given. start : any motion [n].
+    mass [n], kg; stiffness, N/m; viscosity, N s/m, without entries where there is none. fixed : int
+    array, freedoms whose motion is given. start : any motion [n].
     """
     moving = np.setdiff1d(np.flatnonzero(stiffness.diagonal() > 0), fixed)
     scale = diags(1 / np.sqrt(mass[moving]))
@@ -41,7 +41,7 @@ def critical_step(
         start = np.random.default_rng(0).standard_normal(mass.size)
     mode, error = highest_mode(k, start[moving])
     dt = 2 / sqrt(float(mode @ (k @ mode)) + error)
-    if viscosity is None:
+    if not viscosity.nnz:
         return dt
     c = scaled(viscosity)
     for _ in range(ROUNDS):

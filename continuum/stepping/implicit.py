@@ -212,7 +212,7 @@ class Implicit:
 
     def _enter(self, trial: Moment, forces: Forces) -> None:
         """Add the work of all forces over a step by the trapezoidal rule."""
-        now, sums, held = self.now, trial.sums, self.problem.fixed
+        now, sums, held = self.now, trial.sums, self.problem.held.freedom
         moved = trial.u - now.u
         sums[VISCOUS] += (now.forces.viscous + forces.viscous) @ moved / 2
         sums[BOUNDARY] += (now.forces.boundary + forces.boundary) @ moved / 2
@@ -233,7 +233,7 @@ class Implicit:
     def _hold(self, moment: Moment, n: int, share: float) -> None:
         """Give held freedoms their motion at step n and a share of the next."""
         held = self.problem.held
-        if held is not None and held.moved is not None:
+        if held.moved is not None:
             given = (1 - share) * self._motion[:, n] + share * self._motion[:, n + 1]
             for values, value in zip(moment[:3], given, strict=True):
                 values[held.freedom] = value * held.direction
@@ -249,7 +249,8 @@ class Implicit:
             out.stress[:, s] += read.viscous @ now.v
         if read.inertia is not None:
             balancing = forces.whole / self.balance.mass
-            balancing[self.problem.fixed] = now.a[self.problem.fixed]
+            held = self.problem.held.freedom
+            balancing[held] = now.a[held]
             out.stress[:, s] += read.inertia @ (balancing + self.problem.alpha * now.v)
         out.traction[:, s] = read.traction @ forces.loads + read.carried
         out.jump[:, s] = read.jump @ forces.jump
@@ -266,10 +267,10 @@ class Implicit:
             out.energy[:, s] = terms
 
 
-def motion_of(held: Held | None, count: int, dt: float) -> np.ndarray:
+def motion_of(held: Held, count: int, dt: float) -> np.ndarray:
     """Return displacement, velocity and acceleration of what moves at so many steps [3, count]:
     sums of the given steps, and centred differences of them, at rest before t = 0."""
-    if held is None or held.moved is None:
+    if held.moved is None:
         return np.zeros((3, count))
     after = held.moved(np.arange(count))
     before = np.concatenate([[0.0], after[:-1]])

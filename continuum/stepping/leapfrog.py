@@ -1,7 +1,5 @@
 """Explicit steps of a problem: from it to the constants, the state and the forces of the kernel."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
@@ -50,7 +48,7 @@ class Leapfrog:
         self.halo = self.product.beyond(every - own, body.components)
         self.samples = samples_for(problem.readings, samples, energy)
         self.constants = c = self._constants()
-        many, springs, damped = c.memory.share.size, c.quiet.stiffness, body.damping is not None
+        many, springs, damped = c.memory.share.size, c.quiet.stiffness, body.damping.nnz > 0
         jumps = len(c.jumps.first) * body.components
         self.flags = StepFlags(
             dim=body.components,
@@ -93,7 +91,7 @@ class Leapfrog:
             drive, moved = np.zeros((end - begin, 0)), np.zeros(end - begin)
             if forces is not None:
                 drive = np.ascontiguousarray(forces.at(begin, end))
-            if held is not None and held.moved is not None:
+            if held.moved is not None:
                 moved = np.ascontiguousarray(held.moved(np.arange(begin, end)))
             yield begin, drive, moved
 
@@ -144,7 +142,7 @@ class Leapfrog:
     def drop(self, force: np.ndarray) -> None:
         """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
         fall = 0.5 * self.dt * force / self.problem.body.mass
-        fall[self.problem.fixed] = 0.0
+        fall[self.problem.held.freedom] = 0.0
         self.place(-fall, self.state.v)
         self.place(-3 * fall, self.state.v_before)
 
@@ -167,8 +165,8 @@ class Leapfrog:
             steady=np.zeros(0) if problem.steady is None else self._placed(problem.steady),
             driven=np.zeros(0, np.int64) if forces is None else place[forces.freedom],
             quiet=self._quiet(inverse),
-            fixed=place[problem.fixed],
-            direction=np.zeros(0) if held is None else held.direction,
+            fixed=place[held.freedom],
+            direction=held.direction,
             receivers=receivers(problem.readings, place),
         )
 
@@ -179,18 +177,16 @@ class Leapfrog:
 
     def _jumps(self) -> Jumps:
         joints, dim = self.problem.body.joints, self.problem.body.components
-        if joints is None:
-            return Jumps(np.zeros((0, 2), np.uint32), np.zeros((0, dim, dim)))
         first = np.append(self.product.place, self.halo)[dim * joints.node]
         return Jumps(first.astype(np.uint32), joints.frame)
 
     def _quiet(self, inverse: np.ndarray) -> Quiet:
-        quiet, dim = self.problem.dashpots, self.problem.body.components
+        quiet, dim = self.problem.quiet, self.problem.body.components
         own, springs = quiet.freedom, 3 * (np.zeros((0, dim)),)
         if quiet.springs is not None:
             half = quiet.springs(self.dt)
             springs = half.stiffness, half.decay, half.gain
-        moves = ~np.isin(own, self.problem.fixed)
+        moves = ~np.isin(own, self.problem.held.freedom)
         viscosity = quiet.viscosity * (moves[:, :, None] & moves[:, None, :])
         freedom = self.product.place[own]
         beta = inverse[freedom][:, :, None] * viscosity / 2
@@ -202,7 +198,7 @@ def products_for_steps(body: Body) -> tuple[Product, Table]:
     without damping."""
     dim, of_nodes = body.components, (blocks_of_nodes(body), body.x)
     own = product_of(body.stiffness, dim, *of_nodes)
-    if body.damping is None:
+    if not body.damping.nnz:
         return own, Table(np.zeros(0, np.int64), np.zeros(0, np.uint32), np.zeros(0))
     other = product_of(body.damping, dim, *of_nodes)
     if other.kind == own.kind:  # vectors are then in the same places

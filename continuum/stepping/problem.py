@@ -1,7 +1,5 @@
 """A body and what acts on it: the problem that explicit and implicit steps solve."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -58,6 +56,7 @@ class Readings(NamedTuple):
     inertia: csr_matrix | None = None
 
 
+NO_DASHPOTS = Dashpots(np.zeros(0, np.int64), np.zeros((0, 1, 1)))
 #: What receivers read of points, not of freedoms.
 OF_POINTS = ("traction", "jump")
 
@@ -83,34 +82,23 @@ class Problem(NamedTuple):
     alpha: float = 0.0
     mechanisms: Mechanisms | None = None
     steady: np.ndarray | None = None
-    quiet: Dashpots | None = None
+    quiet: Dashpots = NO_DASHPOTS
     forces: Any = None
-    held: Held | None = None
+    held: Held = Held(np.zeros(0, np.int64), np.zeros(0))
     comm: Any = None
     counted: int | None = None
 
     @property
     def parts(self) -> LawFlags | None:
         """The parts of the joints' law; None without joints."""
-        if self.law is None or self.body.joints is None:
+        if self.law is None or not len(self.body.joints.weight):
             return None
         return parts_of(self.law)._replace(planar=self.body.components == 2)
-
-    @property
-    def dashpots(self) -> Dashpots:
-        """Those of quiet sides, of no nodes without."""
-        none = Dashpots(np.zeros(0, np.int64), np.zeros((0, *2 * (self.body.components,))))
-        return self.quiet or none
-
-    @property
-    def fixed(self) -> np.ndarray:
-        """Freedoms whose motion is given."""
-        return np.zeros(0, np.int64) if self.held is None else self.held.freedom
 
     def of_joints(self, normal: Any, shear: Any) -> csr_matrix:
         """Return B^T W k B of normal and shear values k of each column, or one of all."""
         joints, dim = self.body.joints, self.body.components
-        if joints is None:
+        if not len(joints.weight):
             return csr_matrix(self.body.stiffness.shape)
         values = np.zeros((len(joints.weight), dim))
         for c, value in enumerate([normal, *(dim - 1) * [0.0 if shear is None else shear]]):
@@ -125,19 +113,19 @@ class Problem(NamedTuple):
         found = self.body.stiffness
         if self.law is not None:
             found = csr_matrix(found + self.of_joints(*self.stiffest))
-        if self.quiet is not None and self.quiet.springs is not None:
+        if self.quiet.springs is not None:
             of_sides = np.zeros(found.shape[0])
             of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical_stiffness
             found = csr_matrix(found + diags(of_sides))
         return found
 
     @property
-    def viscosity(self) -> csr_matrix | None:
-        """The viscosity of rock and joints, N s/m; None without dashpots."""
+    def viscosity(self) -> csr_matrix:
+        """The viscosity of rock and joints, N s/m; without entries where there are no dashpots."""
         law, found = self.law, self.body.damping
         if law is not None and law.normal_viscosity is not None:
             joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
-            found = joints if found is None else csr_matrix(found + joints)
+            found = csr_matrix(found + joints) if found.nnz else joints
         return found
 
     def critical_step(self) -> float:
@@ -152,12 +140,12 @@ class Problem(NamedTuple):
         phase = (x + middle[block]) @ np.sqrt([2.0, 3.0, 5.0])[: x.shape[1]] / x.max()
         waves = 1e3 * np.sqrt(np.arange(7, 7 + body.components))
         start = np.sin(np.outer(phase, waves)).ravel()
-        return critical_step(body.mass, self.stiffness, self.viscosity, self.fixed, start)
+        return critical_step(body.mass, self.stiffness, self.viscosity, self.held.freedom, start)
 
     def points(self) -> Points:
         """Return the points of the joints as kernels take them."""
         joints = self.body.joints
-        if self.law is None or joints is None:
+        if self.law is None:
             none = np.zeros(0)
             return Points(none, none.astype(np.int64), np.zeros((0, 0)), none, 0)
         table, count = law_table(self.law), len(joints.weight)

@@ -72,19 +72,17 @@ def scaled_mass(problem: Problem) -> Scaled | None:
     for _ in range(HALVINGS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_little(middle) else (low, middle)
-    added, none = lacking(low), np.zeros(mass.size)
-    k, c = (none if one is None else one.diagonal() for one in matrices)
+    added = lacking(low)
+    k, c = (one.diagonal() for one in matrices)
     before = float(_longest(mass.ravel(), k, c).min())
     share = float(added.sum() / mass[:, 0].sum())
     return Scaled((mass + added[:, None]).ravel(), int((added > 0).sum()), share, before)
 
 
-def _sums(problem: Problem, matrix: csr_matrix | None, shape: tuple[int, ...]) -> np.ndarray:
+def _sums(problem: Problem, matrix: csr_matrix, shape: tuple[int, ...]) -> np.ndarray:
     """Return sums of the absolute values of rows [nodes, d], 0 where the motion is given."""
-    found = np.zeros(shape)
-    if matrix is not None:
-        found = np.asarray(abs(matrix).sum(axis=1)).reshape(shape)
-    found.reshape(-1)[problem.fixed] = 0.0
+    found = np.asarray(abs(matrix).sum(axis=1)).reshape(shape)
+    found.reshape(-1)[problem.held.freedom] = 0.0
     return found
 
 

@@ -11,8 +11,6 @@ holds is at rest wherever it is put: a mass matrix that is next to nothing besid
 makes Newton's matrix regular. It regularises the matrix, not the forces.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +20,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance
 from jointwave.continuum.stepping.newton import Outcome, newton
-from jointwave.continuum.stepping.problem import Problem
+from jointwave.continuum.stepping.problem import NO_DASHPOTS, Problem
 from jointwave.joints.law import IN_MOTION, Law
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
@@ -86,7 +84,7 @@ def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -
     return Rest(own.u, own.past.history, steps, outcome.errors[-1] / (own.size or 1.0))
 
 
-def _creep(scene: AnyScene, own: _Static, done: float) -> tuple[Outcome, int]:
+def _creep(scene: AnyScene, own: "_Static", done: float) -> tuple[Outcome, int]:
     """Let the rock creep to rest under all of its forces; return the last step, which found it
     there, and the corrections made.
 
@@ -127,14 +125,15 @@ def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
 
 def _at_rest(problem: Problem) -> Problem:
     """Return a problem without what resists motion: with relaxed rock, and no dashpots."""
-    body, law, relaxes = problem.body._replace(damping=None), problem.law, problem.mechanisms
+    law, relaxes, none = problem.law, problem.mechanisms, csr_matrix(problem.body.damping.shape)
+    body = problem.body._replace(damping=none)
     if relaxes is not None:
         body = body._replace(stiffness=csr_matrix(relaxes.relaxed * body.stiffness))
     if law is not None:
         names = (Law._fields[row] for row in IN_MOTION)
         still = {name: 0.0 * value for name in names if (value := getattr(law, name)) is not None}
         law = law._replace(**still)
-    return problem._replace(body=body, law=law, mechanisms=None, alpha=0.0, quiet=None)
+    return problem._replace(body=body, law=law, mechanisms=None, alpha=0.0, quiet=NO_DASHPOTS)
 
 
 class _Static:
@@ -157,7 +156,7 @@ class _Static:
         self.matrix, self.carries = own.stiffness, k
         if hold is not None:
             self.matrix, self.carries = csr_matrix(self.matrix + hold), k + hold.diagonal()
-        elif np.unique(problem.fixed % dim).size < dim:
+        elif np.unique(problem.held.freedom % dim).size < dim:
             self.matrix = csr_matrix(self.matrix + LOOSE * self.stiffest * diags(own.mass))
         self.moved = np.zeros_like(k)
 

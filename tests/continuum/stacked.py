@@ -42,7 +42,7 @@ def stack(dim, count, cells, across=1, order=2, modulus=2.0, poisson=0.25):
 def readings(body, nodes=()):
     """Return readings of the motion of nodes."""
     dim = body.components
-    points = 0 if body.joints is None else len(body.joints.weight)
+    points = len(body.joints.weight)
     freedom = (dim * np.array(nodes, int)[:, None] + np.arange(dim)).ravel()
     rows = np.arange(freedom.size)
     motion = csr_matrix((np.ones(freedom.size), (rows, freedom)), (rows.size, dim * len(body.x)))

@@ -26,8 +26,8 @@ def pushed(dim, dt, eta=None, held=False):
     noise = np.random.default_rng(1).standard_normal(1000)
     every = STEP * np.arange(1000)
     push = Force(dim * top, body.sides["top"].weight, lambda t: np.interp(t, every, noise), dt)
-    fixed = (dim * below[:, None] + np.arange(dim)).ravel()
-    stays = Held(fixed, np.zeros(fixed.size)) if held else None
+    fixed = (dim * below[: len(below) * held, None] + np.arange(dim)).ravel()
+    stays = Held(fixed, np.zeros(fixed.size))
     return problem(body, joined(2, dim > 1, eta), top[:1], forces=push, held=stays)
 
 
