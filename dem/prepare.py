@@ -98,9 +98,8 @@ def loads_of(
         dashpots(around.points, one, row, len(rows)) for one in (around.impedance, around.borne)
     )
     waves = [] if around.waves is None else around.waves(incident, rows, time)
-    if moving is not None and around.impedance[around.moves].any():
-        k = int(row[around.moves][0])
-        waves.append(before_base(k, resistance[k][:, : blocks.dim], moving))
+    if moving is not None and blocks.in_row and resistance[0].any():
+        waves.append(before_base(resistance[0][:, : blocks.dim], moving))
     return (
         Loads(rows, around.patterns, waves, time, blocks.onto, blocks.composed),
         resistance,

@@ -67,7 +67,6 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
         points=quiet,
         impedance=impedance,
         borne=borne(scene, quiet.normal),
-        moves=np.zeros(len(quiet.block), dtype=bool),
         patterns=patterns,
         bases=[Base(one.side or "", one, np.array(one.direction)) for one in scene.bases],
         opened=opened,

@@ -48,7 +48,6 @@ def surroundings_of(
         points=points,
         impedance=along_and_across(points.normal, impedance[end]),
         borne=np.array(scene.bears, dtype=float)[end, None, None] * np.eye(dim),
-        moves=np.array([shaken, False])[end],
         patterns=patterns,
         bases=[Base("start", scene.load, direction)] * shaken,
         springs=tuple(

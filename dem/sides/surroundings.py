@@ -44,18 +44,17 @@ class EndSpring(NamedTuple):
 class Surroundings(NamedTuple):
     """What acts on blocks from outside.
 
-    points : where dashpots act, sides that waves pass among them. impedance : there
-    [m, d, d], Pa s/m. borne : what bears the weight there, likewise, of 1 or 0.
-    moves : which of them are before the first base, bool array [m]. patterns : forces. opened : by
-    which walls of openings hold their blocks before these are excavated; None without. bases :
-    walls that move. springs : before dashpots. waves : of a field, the blocks of the rows and the
-    clock, what the field does to them; None where no wave enters.
+    points : where dashpots act, sides that waves pass among them; before a base that moves those
+    of the first block. impedance : there [m, d, d], Pa s/m. borne : what bears the weight there,
+    likewise, of 1 or 0. patterns : forces. opened : by which walls of openings hold their blocks
+    before these are excavated; None without. bases : walls that move. springs : before dashpots.
+    waves : of a field, the blocks of the rows and the clock, what the field does to them; None
+    where no wave enters.
     """
 
     points: BoundaryPoints
     impedance: np.ndarray
     borne: np.ndarray
-    moves: np.ndarray
     patterns: list[Pattern]
     bases: list[Base]
     springs: tuple[EndSpring, ...] = ()
@@ -69,18 +68,16 @@ class Surroundings(NamedTuple):
         return np.unique(np.concatenate(own))
 
 
-def before_base(row: int, push: np.ndarray, moving: Shaking) -> Source:
-    """Return what the dashpots before a moving base push with, by its mean velocity over both half
-    steps.
-
-    row : of the block. push : resultants over the base's velocity [d + d^2, d], N s/m.
+def before_base(push: np.ndarray, moving: Shaking) -> Source:
+    """Return what the dashpots before a moving base push the first block with, by its mean velocity
+    over both half steps; push : resultants over the base's velocity [d + d^2, d], N s/m.
     """
 
     def acting(steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
         found = np.zeros((len(steps), len(rows), len(onto)))
         begin = moving(np.maximum(steps - 1, 0))[:, 0] * (steps > 0)[:, None]
         mean = (begin + moving(steps)[:, 0]) / 2
-        found[:, rows == row] = (mean @ (onto @ push).T)[:, None]
+        found[:, rows == 0] = (mean @ (onto @ push).T)[:, None]
         return found
 
     return acting

@@ -101,27 +101,27 @@ def test_step_above_the_critical_one_is_refused(pillar):
         simulate(pillar(numerics__continuum__step_fraction=1.5))
 
 
-def of_matrices(stiffness, viscosity=None, given=()):
+def of_matrices(stiffness, viscosity=0.0, given=()):
     """Return the critical step of masses of 1 kg on springs and dashpots, s; given : freedoms whose
     motion is."""
-    matrices = csr_matrix(stiffness), None if viscosity is None else csr_matrix(viscosity)
+    matrices = csr_matrix(stiffness), csr_matrix(viscosity + 0.0 * stiffness)
     return critical_step(np.ones(len(stiffness)), *matrices, np.array(given, int))
 
 
 @pytest.mark.parametrize(
     ("springs", "dashpots", "given", "dt"),
     [
-        ([9.0], None, (), 2 / 3),
+        ([9.0], [0.0], (), 2 / 3),
         ([9.0], [2.0], (), 2 * (np.sqrt(13) - 2) / 9),
         ([9.0, 1.0], [0.0, 4.0], (), np.sqrt(68) - 8),
-        ([9.0, 1.0], None, [0], 2.0),
+        ([9.0, 1.0], [0.0, 0.0], [0], 2.0),
     ],
     ids=["spring", "dashpot", "dashpots decide", "motion is given"],
 )
 def test_critical_step_of_single_freedoms(springs, dashpots, given, dt):
     """omega = 3: 2/3 s. With a dashpot of C / M = 2: 9 dt^2 + 8 dt = 4. The stiffest is bounded by
     2/3 s, the most damped one, 1 + 16 dt = 4 / dt, by less. What is given bounds nothing."""
-    found = of_matrices(np.diag(springs), None if dashpots is None else np.diag(dashpots), given)
+    found = of_matrices(np.diag(springs), np.diag(dashpots), given)
     assert found == pytest.approx(dt, rel=1e-12)
 
 
