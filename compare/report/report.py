@@ -5,6 +5,7 @@ import platform
 import shlex
 from base64 import b64encode
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from importlib.metadata import version
 from math import isfinite
@@ -35,7 +36,7 @@ from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 from jointwave.compare.runs.timings import machine
 from jointwave.compare.scenes import load_variants
 from jointwave.compare.studies.forecast import Run
-from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
+from jointwave.compare.studies.store import DIED, FAILURES, Pool, alone, in_processes
 from jointwave.compare.text import in_seconds, percent, table_cell, times
 
 WORKERS = 2  # processes
@@ -132,9 +133,10 @@ def _solve(
     with alone():
         for one in found.values():
             for name, taken in one.seconds.items():
-                if taken <= LONG:
-                    again = engines.solve(name, one.scene).attrs["seconds_stepping"]
-                    one.seconds[name] = min(taken, again)
+                with suppress(*FAILURES):  # of engines that solve another variant
+                    if taken <= LONG:
+                        again = engines.solve(name, one.scene).attrs["seconds_stepping"]
+                        one.seconds[name] = min(taken, again)
     return [found[one.name] for one in requests]
 
 

@@ -64,11 +64,12 @@ class SceneRequest(NamedTuple):
 class SolvedScene(NamedTuple):
     """A scene solved by all that applies.
 
-    scene : its first variant, and the seconds of stepping it by engine. lead : the picture at the
-    head of its page; None without receivers. tables : by name, and the
-    files of those that are written. scores : where its engines stand. worst : misfits by pair.
-    versions : of the packages that solved it. about : what its misfit is made of, of the paper's
-    free pillar. read : seconds that each result took which was read, not computed.
+    scene : its first variant that most engines solve, and the seconds of stepping it by engine, of
+    another one by those that do not. lead : the picture at the head of its page; None without
+    receivers. tables : by name, and the files of those that are written. scores : where its engines
+    stand. worst : misfits by pair. versions : of the packages that solved it. about : what its
+    misfit is made of, of the paper's free pillar. read : seconds that each result took which was
+    read, not computed.
     """
 
     request: SceneRequest
@@ -132,15 +133,17 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
     """
     own, scenes = request.own(stored), load_variants(request.file)
     comparisons = [compare(scene, spectral=True, stored=own) for scene in scenes]
-    results, scores = comparisons[0].results, engine_scores(comparisons)
+    scores = engine_scores(comparisons)
+    timed = max(comparisons, key=lambda one: len(scores.keys() & one.results.keys()))
+    results = {**{k: x for one in comparisons for k, x in one.results.items()}, **timed.results}
     readings = tables.reading_frame(comparisons)
     frames = {"misfits": tables.distance_frame(comparisons), "readings": readings}
     paths = {name: folder / f"{request.name}-{name}.csv" for name in frames if len(frames[name])}
     versions = [json.loads(result.attrs.get("versions", "{}")) for result in results.values()]
     return SolvedScene(
         request,
-        comparisons[0].scene,
-        {n: float(results[n].attrs["seconds_stepping"]) for n in scores if n in results},
+        timed.scene,
+        {engine: float(results[engine].attrs["seconds_stepping"]) for engine in scores},
         *_draw(request, comparisons, folder, own),
         [measure(comparisons) for measure in CLAIMS.get(request.number or 0, [])],
         {

@@ -10,7 +10,15 @@ from jointwave.cases.errors import SceneError
 from jointwave.compare.figures.export import Drawn
 from jointwave.compare.report.claims import Claim
 from jointwave.compare.report.report import build, render
-from jointwave.compare.report.scenes import PAPER, ROCK_MASSES, SceneRequest, SolvedScene, asked_for
+from jointwave.compare.report.scenes import (
+    PAPER,
+    ROCK_MASSES,
+    SceneRequest,
+    SolvedScene,
+    asked_for,
+    lead,
+    solve,
+)
 from jointwave.compare.report.sections import section
 from jointwave.compare.studies.experiment import Summary
 
@@ -61,6 +69,21 @@ def scene(tmp_path, pillar):
         return SolvedScene(request, one, {"dem": 1.0}, *shown)
 
     return make
+
+
+def test_an_engine_of_a_later_variant_alone_is_timed_there(tmp_path, in_toml):
+    """Its rock is known in that variant only."""
+    known = {"name": "known", "rock": {"intact_modulus": 8.64e10}}
+    tables = {
+        "title": "a variant", "pillar": {"length": 2.0, "side": 0.5, "block": 0.5},
+        "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0},
+        "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01},
+        "time": {"duration": 0.02}, "record": {"stress": [1.0]}, "variants": [known],
+    }  # fmt: skip
+    (file := tmp_path / "own.toml").write_text(in_toml(tables))
+    found = solve(SceneRequest(file, "own", "own"), tmp_path)
+    assert found.scene.name == "known" and found.seconds["continuum-jointed"] > 0
+    assert "the time of the cheapest" in lead([found])["continuum-jointed"]
 
 
 def test_a_failed_claim_is_red_and_named_at_the_top(page, scene):
