@@ -28,91 +28,71 @@ DOWN = {"direction": [0.0, 1.0, 0.0]}
 RECORD = {"stress": [0.0, 1.0, 20.0, 50.0], "velocity": [0.25, 20.25, 49.75]}
 
 
+def arm(x, y, z):
+    """Return the motion of a point of a body by its displacements and rotations, [3, 6]."""
+    return np.hstack([np.eye(3), np.cross(np.eye(3), [x, y, z]).T])
+
+
 class Points:
-    """Equations of motion of four blocks with two massless faces, every contact by its points."""
+    """Equations of motion of four blocks and two massless faces, 4 and 5, before ground, 6: every
+    contact by its points."""
 
     def __init__(self, scene):
-        p, self.scene, self.d, self.load = calibrate(scene), scene, 0.5, drive(scene)
+        p, self.scene, self.load = calibrate(scene), scene, drive(scene)
         self.points = face_points(0.5, scene.joints.contact_points, scene.joints.point_rule)
+        self.K, self.C = np.zeros((2, 36, 36))
+        self.mass = np.tile(p.block_mass * np.array([1, 1, 1, *[0.5**2 / 6] * 3]), 4)
+        self.alpha, self.free = p.mass_damping or 0.0, np.zeros(12, bool)
         eta, joints = p.time_constant or 0.0, p.joint_time_constant
         joints = np.zeros(3) if joints is None else joints
-        self.half = self.matrix(2 * p.regular_stiffness, 2 * p.regular_shear_stiffness), eta
+        laws = zip(p.stiffness, p.shear_stiffness, joints, strict=True)
+        self.joints = [(self.join(j, j + 1, *law), law[2]) for j, law in enumerate(laws)]
+        half, dashpot = 2 * p.regular_stiffness, (p.impedance, p.shear_impedance)
         intact = 2 * scene.rock.intact_modulus / 0.5  # of half a block
-        self.wall = self.matrix(intact, intact / 2.5), eta
-        springs = map(self.matrix, p.stiffness, p.shear_stiffness)
-        self.joints = list(zip(springs, joints, strict=True))
-        self.dashpot = self.matrix(p.impedance, p.shear_impedance)
-        self.mass = p.block_mass * np.array([1, 1, 1, *[0.5**2 / 6] * 3])
-        self.alpha, self.ends = p.mass_damping or 0.0, (scene.ends.start, scene.ends.end)
+        walls = {"fixed": (intact, intact / 2.5), "matched": (half, 2 * p.regular_shear_stiffness)}
+        for kind, pair, face in ((scene.ends.start, (4, 0), 4), (scene.ends.end, (3, 5), 5)):
+            if kind in walls:
+                self.join(*pair, *walls[kind], eta)
+            if kind == "quiet":
+                self.join(*(6 if body == face else body for body in pair), *dashpot)
+            if kind == "matched":
+                self.join(face, 6, *dashpot)
+                self.free[6 * face - 24 : 6 * face - 18] = True
 
-    def resistance(self, normal, shear, rel):
-        """Return F and M [6] of springs or dashpots per unit area against a relative motion."""
-        out = np.zeros(6)
+    def join(self, one, other, normal, shear, eta=None):
+        """Add springs per unit area with a time constant, or dashpots without; return what they
+        pull `one` by, [3, 36]."""
+        pull = np.zeros((3, 36))
         for x, z, area in zip(*self.points, strict=True):
-            r = np.array([x, 0.0, z])
-            f = area * (rel[:3] + np.cross(rel[3:], r)) * [shear, normal, shear]
-            out += np.concatenate([f, np.cross(r, f)])
-        return out
-
-    def matrix(self, normal, shear):
-        return np.array([self.resistance(normal, shear, e) for e in np.eye(6)]).T
-
-    def face(self, q, h):
-        moved = q.copy()
-        moved[..., 0] -= h * q[..., 5]
-        moved[..., 2] += h * q[..., 3]
-        return moved
-
-    def pulls(self, q, v):
-        """Return F and M of each joint on the block in front of it, of motions [4, ..., 6]."""
-        for j, (spring, eta) in enumerate(self.joints):
-            rel, rate = (
-                self.face(x[j + 1], -self.d / 2) - self.face(x[j], self.d / 2) for x in (q, v)
-            )
-            yield (rel + eta * rate) @ spring.T
-
-    def end(self, kind, q, v, face, wall):
-        """Return what an end resists its block's face by, and the velocity of the end's face."""
-        if kind == "free":
-            return np.zeros(6), np.zeros(6)
-        if kind == "quiet":
-            return self.dashpot @ v, np.zeros(6)
-        spring, eta = self.wall if kind == "fixed" else self.half
-        if kind == "fixed":
-            return spring @ (q - face + eta * (v - wall)), wall
-        w = np.linalg.solve(self.dashpot + eta * spring, spring @ (q - face + eta * v))
-        return self.dashpot @ w, w
+            relative = np.zeros((3, 42))
+            for body, sign in ((one, -1), (other, 1)):
+                y = -sign * 0.25 if body < 4 else 0.0
+                relative[:, 6 * body : 6 * body + 6] = sign * arm(x, y, z)
+            relative = relative[:, :36]
+            own = area * np.diag([shear, normal, shear]) @ relative
+            self.K += 0.0 if eta is None else relative.T @ own
+            self.C += (1.0 if eta is None else eta) * relative.T @ own
+            pull += own
+        return pull
 
     def slope(self, t, state):
-        q, v, faces = (x.reshape(-1, 6) for x in np.split(state, [24, 48]))
-        load, wall, force, d = self.scene.load, np.zeros(6), np.zeros((4, 6)), self.d
-
-        def push(i, h, f):
-            force[i] += f
-            force[i, 3:] += h * np.array([f[2], 0, -f[0]])  # of an arm along y
-
-        for j, f in enumerate(self.pulls(q, v)):
-            push(j + 1, -d / 2, -f)
-            push(j, d / 2, f)
-        f = self.load.value(t)
+        """Return the rates of all motions [36] and of the blocks' velocities [24]."""
+        (q, v), load, free = np.split(state, [36]), self.scene.load, self.free
+        w, f = np.zeros(12), self.load.value(t) * np.array(load.direction)
         if load.is_motion:
-            wall[:3] = f * np.array(load.direction)
-        elif load.arm:
-            force[0, 3:] += 0.25 * f * load.arm * np.array(load.direction)
-        else:
-            f = 0.25 * f * np.array(load.direction)
-            push(0, -d / 2, np.concatenate([f, np.cross([load.at[0], 0, load.at[1]], f)]))
-        moves = []
-        for kind, i, h, w in zip(self.ends, (0, 3), (-d / 2, d / 2), (wall, 0 * wall), strict=True):
-            r, moved = self.end(kind, self.face(q[i], h), self.face(v[i], h), faces[i // 3], w)
-            push(i, h, -r)
-            moves.append(moved)
-        force -= self.alpha * self.mass * v
-        return np.concatenate([v.ravel(), (force / self.mass).ravel(), *moves])
+            w[:3] = f
+        left = self.K @ q + self.C @ np.append(v, w)
+        w[free] -= np.linalg.solve(self.C[24:, 24:][np.ix_(free, free)], left[24:][free])
+        force = -(self.K @ q + self.C @ np.append(v, w))[:24] - self.alpha * self.mass * v
+        if load.arm:
+            force[3:6] += 0.25 * load.arm * f
+        elif not load.is_motion:
+            force[:6] += 0.25 * arm(load.at[0], -0.25, load.at[1]).T @ f
+        return np.concatenate([v, w, force / self.mass])
 
     def solved(self):
-        """Return the motions and velocities [4, n, 6] at the scene's samples, by DOP853 of the
-        slopes, which are linear in the state and the load."""
+        """Return motions and velocities of the blocks [n, 24] at the scene's samples, by DOP853 of
+        the slopes, which are linear in the state and the load."""
         times, rows, x = sample_times(self.scene), [np.zeros(60)], np.zeros(60)
         A = np.array([self.slope(-1.0, e) for e in np.eye(60)]).T
         b = self.slope(5e-4, np.zeros(60)) / self.load.value(5e-4)
@@ -126,8 +106,7 @@ class Points:
 
             part = solve_ivp(slope, (start, stop), x, "DOP853", within, **tight).y.T
             rows, x = [*rows, *part], part[-1]
-        out = np.array(rows).T.reshape(-1, 6, len(times))
-        return out[:4].swapaxes(1, 2), out[4:8].swapaxes(1, 2)
+        return np.array(rows)[:, :24], np.array(rows)[:, 36:]
 
 
 CASES = {
@@ -158,7 +137,8 @@ def test_the_sum_over_points_by_a_tight_ode_solver_agrees(scene, name):
     at = scene(pillar=SHORT, time={"duration": 0.01}, record=CENTRES, **tables)
     points, result = Points(at), row_of_blocks.solve(at)
     q, v = points.solved()
-    traction = np.array([-f[:, :3] / 0.25 for f in points.pulls(q, v)])
+    pulls = [(q + eta * v) @ pull[:, :24].T for pull, eta in points.joints]
+    traction, (q, v) = np.array(pulls) / -0.25, (x.reshape(-1, 4, 6).swapaxes(0, 1) for x in (q, v))
     for found, expected in (
         (result.displacement, q[..., :3]),
         (result.rotation, q[..., 3:]),
@@ -177,8 +157,7 @@ def test_springs_push_as_the_sum_over_the_points_of_any_rule(scene, n, rule):
     rules = {"contact_points": n, "point_rule": rule}
     at = scene(pillar=SHORT, load=ACROSS, soft_layers=SOFT, joints=rules, record=CENTRES)
     points, q = Points(at), np.random.default_rng(3).standard_normal(24)
-    still = np.concatenate([q, np.zeros(36)])
-    expected = points.slope(-1.0, still)[24:48] * np.tile(points.mass, 4)
+    expected = -(points.K[:24, :24] @ q)
     found = -(system_of(at).stiffness @ q)
     assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
 
