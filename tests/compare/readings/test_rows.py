@@ -1,14 +1,11 @@
 """Speed, attenuation and dispersion between receivers, against the theory of bar and chain."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.read import load_tables
 from jointwave.compare.engines import solve
 from jointwave.compare.readings.attenuation import (
     quality_factor,
@@ -22,24 +19,21 @@ PLACES = list(np.linspace(5.25, 20.25, 16))  # centres of blocks
 PASSED = 0.048  # s; nothing is back from the end at 60 m before
 
 
-@cache
-def column(period=0.01, quality=None, alpha=0.0, **joints):
-    rock = {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10}
-    tables = {
-        "title": "a row",
-        "pillar": {"length": 60.0, "side": 0.5, "block": 0.5},
-        "rock": rock | ({} if quality is None else {"quality_factor": quality}),
-        "joints": joints,
-        "damping": {"mass_proportional": alpha},
-        "load": {"shape": "ricker", "amplitude": 1e6, "period": period},
-        "time": {"duration": PASSED},
-        "record": {"velocity": PLACES, "stress": [5.0, 10.0], "interval": 5e-5},
-    }
-    return load_tables(tables)
+@pytest.fixture(scope="module")
+def column(pillar):
+    """Return a function that gives a pillar of 60 m that a Ricker pulse of a period (s) meets."""
+    record = {"velocity": PLACES, "stress": [5.0, 10.0], "interval": 5e-5}
+    keys = {"pillar__length": 60.0, "time__duration": PASSED, "record": record}
+
+    def made(period=0.01, **changes):
+        load = {"shape": "ricker", "amplitude": 1e6, "period": period}
+        return pillar(**{"load": load} | keys | changes)
+
+    return made
 
 
 @pytest.fixture(scope="module")
-def bar():
+def bar(column):
     return solve("images", column()), calibrate(column()).bar_speed
 
 
@@ -100,10 +94,10 @@ def test_a_pure_delay_transfers_a_falling_phase(bar):
     assert np.abs(transfer.values - exact).max() < 2e-3
 
 
-def test_a_kelvin_voigt_bar_attenuates_by_omega_squared_eta_over_2c():
+def test_a_kelvin_voigt_bar_attenuates_by_omega_squared_eta_over_2c(column):
     """The next terms are 5 / 8 (omega eta)^2 of it and, of Q = 1 / (omega eta), a quarter. To long
     waves blocks are the bar."""
-    scene = column(damping_ratio=0.05)
+    scene = column(joints__damping_ratio=0.05)
     p = calibrate(scene)
     found = quality_factor(solve("equivalent-bar", scene)).sel(frequency=slice(50, 200))
     omega, eta = 2 * np.pi * found.frequency.values, p.time_constant
@@ -120,11 +114,11 @@ def test_a_kelvin_voigt_bar_attenuates_by_omega_squared_eta_over_2c():
     assert blocks.values == pytest.approx(1 / (2 * np.pi * eta), rel=1e-4)
 
 
-def test_rock_of_a_quality_factor_attenuates_as_its_theory():
+def test_rock_of_a_quality_factor_attenuates_as_its_theory(column):
     """The bar of the joints' elastic compliance and of rock whose Q is 10, from records alone: they
     end in the wave's tail, which relaxation draws out, and lack 1e-4 of the amplitude, so that some
     1e-5 1/m of the attenuation over 15 m is not known."""
-    scene = column(quality=10.0)
+    scene = column(rock__quality_factor=10.0)
     found = quality_factor(solve("equivalent-bar", scene)).sel(frequency=slice(60, 180))
     theory = dispersion_theory(scene, found.frequency.values)
     assert theory.rock.values.tolist() == ["bar", "jointed rock"]
@@ -133,10 +127,10 @@ def test_rock_of_a_quality_factor_attenuates_as_its_theory():
     assert found.phase_speed.values == pytest.approx(theory.phase_speed.values, rel=1e-4)
 
 
-def test_damping_by_mass_attenuates_as_its_theory():
+def test_damping_by_mass_attenuates_as_its_theory(column):
     """By alpha / 2 c at every frequency of a long wave: in a bar k^2 = (omega^2 - i alpha omega) /
     c^2."""
-    scene = column(alpha=40.0)
+    scene = column(damping__mass_proportional=40.0)
     found = quality_factor(solve("lattice", scene)).sel(frequency=slice(60, 180))
     theory = dispersion_theory(scene, found.frequency.values)
     blocks = theory.sel(rock="rigid blocks")
@@ -159,16 +153,15 @@ def test_damping_by_mass_attenuates_as_its_theory():
         ({"scatter": {"spacing": 0.1, "seed": 1}}, "scatter: random joints"),
     ],
 )
-def test_what_has_no_theory_of_dispersion_is_refused(changes, words):
-    tables = column().model_dump(exclude_unset=True, exclude_none=True)
+def test_what_has_no_theory_of_dispersion_is_refused(column, changes, words):
     with pytest.raises(SceneError, match=words):
-        dispersion_theory(tables | changes, [50.0])
+        dispersion_theory(column(**changes), [50.0])
 
 
 @pytest.mark.parametrize(
     "solver, rock", [("lattice", "rigid blocks"), ("jointed-bar", "jointed rock")]
 )
-def test_waves_disperse_as_theory_has_it(solver, rock):
+def test_waves_disperse_as_theory_has_it(column, solver, rock):
     """Of a chain omega = (2 c / d) sin(k d / 2), which slows the wave by 6 % at 500 Hz."""
     scene = column(period=0.004)
     found = dispersion(solve(solver, scene)).sel(frequency=slice(60, 500))
