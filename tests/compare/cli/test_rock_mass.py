@@ -91,12 +91,6 @@ def test_a_place_that_the_scene_has_not_is_refused(says, scene, place, words):
     assert words in says(f"compare {scene} --with curve.csv:{place}", code=2).err
 
 
-def test_effects_of_what_rigid_blocks_cannot_be_are_refused_in_one_line(says):
-    said = says("effects joint.toml", code=2)
-    assert said.out == "" and said.err.count("\n") == 1
-    assert "dem does not apply: numerics.dem.block" in said.err
-
-
 def test_a_sweep_has_a_row_a_receiver(says):
     """Of half the amplitude half the peak, at every receiver."""
     said = says("run joint.toml --engine exact --sweep waves.0.amplitude=1e6,5e5 --out swept")

@@ -14,6 +14,7 @@ from jointwave.cases.effects import effects as effects_of
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load_tables
 from jointwave.cases.schema.law_parts import PARTS
+from jointwave.compare.cli import studies
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.compare.studies import effects
 from jointwave.compare.studies.effects import COLUMNS, WITHOUT, Effects, experiment, left_out
@@ -239,7 +240,16 @@ def test_the_command_prints_a_scene_and_keeps_its_files(command, tmp_path, monke
     assert facts["rows"][0]["misfit"] == 0 and facts["rows"][0]["ns"] == 3
 
 
-def test_a_scene_without_effects_is_refused_in_one_line(command):
-    scene = ["effects", "guo-li-2002/fig-03", "--set", "record.energy=false"]
-    assert "has no effect to leave out" in (said := command(*scene, code=2).err)
-    assert said.count("\n") == 1
+@pytest.mark.parametrize(
+    ("scene", "change", "words"),
+    [
+        ("guo-li-2002/fig-03", "record.energy=false", "has no effect to leave out"),
+        ("rock-mass/one-joint", "numerics.dem={}", "dem does not apply: numerics.dem.block"),
+    ],
+)
+def test_a_scene_without_effects_or_rigid_blocks_is_refused_in_one_line(
+    scene, change, words, command, monkeypatch
+):
+    monkeypatch.setattr(studies, "CORES", 1)
+    said = command("effects", scene, "--variant", "", "--set", change, code=2)
+    assert said.out == "" and words in said.err and said.err.count("\n") == 1
