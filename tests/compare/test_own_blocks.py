@@ -9,6 +9,7 @@ import pytest
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load
 from jointwave.compare.engines import solver
+from jointwave.compare.runs.checkpoint.signature import differences, signature
 
 SCENE = """
 title = "A brick wall"
@@ -78,6 +79,15 @@ def test_waves_in_a_wall_of_bricks_are_those_in_the_wall_that_is_cut(name, scene
     for one in ("velocity", "stress"):
         off = np.abs(found[one] - expected[one]).max() / np.abs(expected[one]).max()
         assert off < OFF[name]
+
+
+def test_a_run_of_blocks_of_a_file_is_of_that_file(scene, tmp_path):
+    """It is not resumed once the file is another, of the same blocks too."""
+    found = scene()
+    one = signature(found, "dem", 1)
+    assert differences(one, signature(found, "dem", 1)) == []
+    (tmp_path / "wall.obj").write_text(wall() + "\n# another")
+    assert differences(one, signature(found, "dem", 1)) == ["scene"]
 
 
 PRESSED = """

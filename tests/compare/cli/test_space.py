@@ -9,46 +9,31 @@ import pytest
 import xarray as xr
 from PIL import Image, ImageSequence
 
-from jointwave.cases.read import load
 from jointwave.compare.figures.drawing import space
 from jointwave.compare.report import sections
-from jointwave.compare.runs.checkpoint.signature import differences, signature
 
 WALL = "rock-mass/masonry-wall"
 ROCKS = ("--set", "loads.0.amplitude=0.1", "--set", "time.duration=0.4")
 FIELDS = ("--set", "record.fields=3e-3")
 
 
-#: A column of two blocks, 2 m high, that a P wave of 8 to 20 m goes through.
-COLUMN = """
-title = "a column"
-domain = { size = [1.0, 1.0, 2.0] }
-rock = { density = 2600.0, intact_modulus = 5e10, intact_poisson = 0.2 }
-waves = [{ kind = "P", direction = [0, 0, 1], shape = "ricker", amplitude = 1e6, period = 6e-3 }]
-time = { duration = 1.2e-2 }
-numerics = { continuum.size = 1.0 }
-record = { points = [[0.3, 0.3, 0.5], [0.3, 0.3, 1.5]], joints = [[0.5, 0.5, 1.0]] }
-expect = { "continuum-jointed ~ oblique-joint" = 0.01 }
-boundaries.bottom = "quiet"
-boundaries.top = "quiet"
-boundaries.left = "roller"
-boundaries.right = "roller"
-boundaries.front = "roller"
-boundaries.back = "roller"
-
-[[joint_sets]]
-name = "bed"
-dip = 0.0
-spacing = 1.0
-through = [0.0, 0.0, 1.0]
-normal_stiffness = 2e10
-shear_stiffness = 8e9
-"""
-
-
 @pytest.fixture(autouse=True)
-def scene(here):
-    Path("column.toml").write_text(COLUMN)
+def column(here, one_joint, in_toml):
+    """A column of two blocks, 2 m high, that a P wave of 8 to 20 m goes through."""
+    sides = dict.fromkeys(("left", "right", "front", "back"), "roller")
+    tables = one_joint(
+        domain={"size": [1.0, 1.0, 2.0]},
+        rock={"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
+        boundaries=sides | {"bottom": "quiet", "top": "quiet"},
+        time={"duration": 1.2e-2},
+        numerics={"continuum": {"size": 1.0}},
+        record={"points": [[0.3, 0.3, 0.5], [0.3, 0.3, 1.5]], "joints": [[0.5, 0.5, 1.0]]},
+        expect={"continuum-jointed ~ oblique-joint": 0.01},
+    )
+    law = {"spacing": 1.0, "normal_stiffness": 2e10, "shear_stiffness": 8e9}
+    tables["joint_sets"][0] |= law | {"dip": 0.0, "through": [0.0, 0.0, 1.0]}
+    tables["waves"][0] |= {"direction": [0, 0, 1], "period": 6e-3}
+    Path("column.toml").write_text(in_toml(tables))
 
 
 def imbalance(result):
@@ -144,25 +129,6 @@ def test_explain_counts_its_blocks(jointwave):
     facts = json.loads(jointwave("explain", WALL, "--json").out)
     assert facts["joint_sets"]["bed"] == {"contacts": 80, "area": pytest.approx(4 * 3.6)}
     assert facts["effects"]["gravity"]["active"]
-
-
-def test_a_run_of_blocks_of_a_file_is_of_that_file():
-    """It is not resumed once the file is another, of the same blocks too."""
-    bricks = Path("bricks.obj")
-    corners = [(x, y, z) for z in "01" for x, y in ("00", "10", "11", "01")]
-    faces = ("1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8")
-    lines = [f"v {' '.join(one)}" for one in corners] + [f"f {one}" for one in faces]
-    bricks.write_text("\n".join(["o 0", *lines]))
-    text = COLUMN.partition("[[joint_sets]]")[0].replace(
-        "size = [1.0, 1.0, 2.0]", 'blocks = "bricks.obj"'
-    )
-    text = text.replace(", [0.3, 0.3, 1.5]", "").replace(", joints = [[0.5, 0.5, 1.0]]", "")
-    Path("own.toml").write_text(text)
-    (scene,) = load("own.toml")
-    one = signature(scene, "dem", 1)
-    assert differences(one, signature(scene, "dem", 1)) == []
-    bricks.write_text(bricks.read_text() + "\n# another")
-    assert differences(one, signature(scene, "dem", 1)) == ["scene"]
 
 
 def test_it_is_drawn(jointwave, words_of):
