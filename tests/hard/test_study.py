@@ -13,7 +13,7 @@ from jointwave.compare.studies.hard_map import boundary, cells_of, columns, comp
 
 CASES = hard_cases.hard_cases()
 #: Laws whose kernels take long to compile.
-LAWS = ("slip weakens", "stiffen", "dilate", "rate of slip")
+LAWS = ("slip weakens", "stiffen", "dilate", "rate of slip", "rock of Q")
 
 
 def rows():
