@@ -333,12 +333,6 @@ def mpiexec():
 
 
 @pytest.fixture(scope="session")
-def paper_folder() -> Path:
-    """The scenes of the paper's figures."""
-    return PILLAR.parent
-
-
-@pytest.fixture(scope="session")
 def scene_with(pillar):
     """The same as `pillar`."""
     return pillar

@@ -1,5 +1,7 @@
 """Every engine stops a run that leaves its bounds, says so in one line, and keeps what is sound."""
 
+import re
+
 import pytest
 
 from jointwave import continuum, dem
@@ -39,7 +41,7 @@ def test_what_is_sound_is_kept_and_nothing_else(forced):
     with pytest.raises(StoppedError, match=r"toml: .* diverged at t = .* s, step \d+ of .* s") as e:
         forced(1000)
     kept = e.value.result
-    assert "set numerics." in str(e.value) and "\n" not in str(e.value)
+    assert re.fullmatch(r".*set numerics\.\w+\.step_fraction to at most 0\.9", str(e.value))
     samples = kept.sizes["time"]
     whole = forced(samples - 1)
     for name in ("stress", "velocity", "displacement", "energy"):

@@ -23,6 +23,7 @@ from jointwave.cases.histories import (
 )
 from jointwave.cases.loads import base_steps, load_history, step_means
 from jointwave.cases.records import read_history
+from jointwave.compare.scenes import SHIPPED
 
 #: 0, 6, 2 Pa at 1, 2, 4 s: 3 Pa s in the first piece, 8 in the second, nothing beyond.
 RECORDED = Recorded(np.array([1.0, 2.0, 4.0]), np.array([0.0, 6.0, 2.0]))
@@ -165,13 +166,13 @@ def test_step_means_telescope_to_the_momentum(load, dt, count):
     assert dt * means.sum() == pytest.approx(momentum, abs=1e-9 * dt * np.abs(means).sum() + 1e-9)
 
 
-def test_load_of_a_scene(scene_with, paper_folder):
+def test_load_of_a_scene(scene_with):
     sine = {"shape": "sine", "amplitude": 2.0, "period": 0.1}
     assert load_history(scene_with(load={"shape": "step", "amplitude": 3.0})) == Step(3.0)
     assert load_history(scene_with(load=sine)) == Sine(2.0, 0.1, 1)
     assert load_history(scene_with(load=sine | {"cycles": 3})) == Sine(2.0, 0.1, 3)
     assert load_history(scene_with(load=sine | {"shape": "ricker"})) == Ricker(2.0, 0.1)
-    tables = tomllib.loads((paper_folder / "fig-03.toml").read_text())
+    tables = tomllib.loads((SHIPPED / "guo-li-2002" / "fig-03.toml").read_text())
     del tables["load"], tables["variants"]
     assert load_history(cases.load_tables(tables)) == Step(0.0)
 
@@ -192,8 +193,8 @@ def test_recorded_history_scaled_by_amplitude(tmp_path, scene_with):
     assert 0.003 * coarse.sum() == pytest.approx(0.5 * 2e6 * 0.004 / 2)
 
 
-def test_synthetic_blast_is_what_its_file_says(paper_folder):
-    load = load_history(cases.load(paper_folder.parent / "beyond" / "blast-history.toml")[0])
+def test_synthetic_blast_is_what_its_file_says():
+    load = load_history(cases.load(SHIPPED / "beyond" / "blast-history.toml")[0])
 
     def hole(s):
         return np.where(s > 0, np.exp(-s / 6e-3) - np.exp(-s / 2e-3), 0.0)

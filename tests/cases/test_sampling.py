@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from jointwave.cases import SceneError
 from jointwave.cases.sampling import clock, interpolation, sample_times
-from jointwave.results.subcells import linear_cells
 
 
 def sampled(duration, interval):
@@ -103,10 +102,3 @@ def test_interpolation():
     assert set(weight) <= {0.0, 1.0} and np.where(weight == 1, right, left).tolist() == [3, 7, 10]
     left, right, weight = interpolation(np.array([2.0]), [0.0, 2.0, 3.0])
     assert left.tolist() == right.tolist() == [0, 0, 0] and np.isfinite(weight).all()
-
-
-def test_cells_of_snapshots_are_as_vtk_counts_them():
-    """Around the lower face of a hexahedron, then around the upper: eight nodes in turn."""
-    nodes = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-    assert linear_cells("hexahedron", nodes).tolist() == [[0, 4, 6, 2, 1, 5, 7, 3]]
-    assert linear_cells("quadrilateral", nodes[::2, :2]).tolist() == [[0, 2, 3, 1]]

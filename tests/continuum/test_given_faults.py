@@ -139,12 +139,6 @@ def test_a_good_file_is_read_without_a_word(tmp_path, column, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_file_that_is_not_there(tmp_path, column):
-    for path, words in ((tmp_path / "gone.msh", "No such file"), (tmp_path, "must be a file")):
-        with pytest.raises(SceneError, match=words):
-            body_of(column(path))
-
-
 def test_interrupts_and_notation_stay(capfd):
     def handler(number, frame):
         raise AssertionError

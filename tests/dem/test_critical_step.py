@@ -100,25 +100,6 @@ def test_step_above_it_is_refused_with_both_numbers(request, engine, keys):
     assert f"{known:.4g}" in str(error.value) and f"{1.5 * known:.4g}" in str(error.value)
 
 
-@pytest.mark.parametrize(
-    ("changes", "error", "words"),
-    [
-        (
-            {"time__duration": 2.0, "record__interval": 1e-3},
-            UnstableError,
-            r"diverged at t = .*step_fraction to at most 0.9$",
-        ),
-        ({}, SceneError, r"record\.interval"),  # below the forced step, which is never shortened
-    ],
-    ids=["it blows up", "samples within a step"],
-)
-def test_a_forced_step_above_it_is_taken_or_refused(pillar, changes, error, words):
-    """allow_unstable lets it run; what leaves its bounds is an UnstableError, not a result."""
-    forced = {"numerics__dem__step_fraction": 1.5, "numerics__dem__allow_unstable": True}
-    with pytest.raises(error, match=words):
-        dem.simulate(pillar(**forced, **changes))
-
-
 LAST = {
     "stiff": {"spacing_stiffness": 4e10},
     "stiff in shear": {"shear_stiffness": 3e10},

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from jointwave.compare.runs.checkpoint.signals import Ended, Signals
+from jointwave.compare.scenes import find
 
 EVERY = ("--checkpoint-every", "0.01")
 
@@ -59,10 +60,10 @@ def test_processes_that_share_a_run_stop_together(
 
 
 def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
-    tmp_path, stopped, said, arguments, paper_folder
+    tmp_path, stopped, said, arguments
 ):
     """Of several runs those that ended stay; the one that was killed goes on."""
-    text = (paper_folder / "fig-03.toml").read_text(encoding="utf-8")
+    text = find("guo-li-2002/fig-03").read_text(encoding="utf-8")
     two, (first, second, *_) = tmp_path / "two.toml", text.split("[[variants]]")
     two.write_text(f"{first}[[variants]]{second}", encoding="utf-8")
     _, _, _, _, *options = arguments("axial", tmp_path, *EVERY)  # but for the scene and its variant
