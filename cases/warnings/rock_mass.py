@@ -36,7 +36,7 @@ def met(scene: RockMass) -> dict[str, Any]:
     fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
     rock, acting = elastic_rock(scene.rock), [one for one in scene.pulses if one.amplitude]
     arrivals = (
-        (f"{key}[{i}] = {_at(place)}", min(_arrival(scene, x, np.array(place)) for x in acting))
+        (f"{key}[{i}] = {spelled(place)}", min(_arrival(scene, x, np.array(place)) for x in acting))
         for key in ("points", "joints")
         for i, place in enumerate(getattr(scene.record, key))
     )
@@ -95,7 +95,8 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
                 )
 
 
-def _at(place: Sequence[float]) -> str:
+def spelled(place: Sequence[float]) -> str:
+    """Return a place in words, "[20, 30]"."""
     return "[" + ", ".join(f"{x:g}" for x in place) + "]"
 
 
@@ -134,7 +135,7 @@ def _of_places(scene: RockMass) -> Iterator[str]:
     away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (
-            f"record.joints[{k}] = {_at(places[k])} is {away[k]:.3g} m from the nearest joint, "
+            f"record.joints[{k}] = {spelled(places[k])} is {away[k]:.3g} m from the nearest joint, "
             "whose motion it records"
         )
 
@@ -148,7 +149,7 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
     if scene.gravity is not None and scene.gravity.direction[-1] >= 0:
         way = "upwards" if scene.gravity.direction[-1] else "sideways"
         up = "z" if scene.in_space else "y"
-        yield f"gravity.direction = {_at(scene.gravity.direction)} pulls {way}: {up} points up"
+        yield f"gravity.direction = {spelled(scene.gravity.direction)} pulls {way}: {up} points up"
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
@@ -247,7 +248,7 @@ def _of_starts(scene: RockMass) -> Iterator[str]:
         early = begun > onset(wave) + EARLY * scene.time.duration
         if wave.amplitude and wave.through is not None and early:
             yield (
-                f"waves[{i}].through = {_at(wave.through)}: the wave enters the domain "
+                f"waves[{i}].through = {spelled(wave.through)}: the wave enters the domain "
                 f"{begun:.3g} s before t = 0, when the rock is at rest: move it back"
             )
 
@@ -280,7 +281,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
             sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))
             on = on[[len(blocks) > 1 for blocks in sides]]
         for key, at, what in (named[i] for i in on):
-            yield f"{key} = {_at(at)} lies on a joint of joint_sets[{k}], {what}"
+            yield f"{key} = {spelled(at)} lies on a joint of joint_sets[{k}], {what}"
 
 
 def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
@@ -297,9 +298,9 @@ def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
         if welded or (rollers and distance(np.array(at), rollers) <= tiny):
             place = "a welded boundary of regions" if welded else "a roller side"
             yield (
-                f"record.points[{i}] = {_at(at)} lies on {place}, where the stress of rigid blocks "
-                f"is off by up to 50 %, however small they are: half a block away, {block / 2:.3g} "
-                "m, it converges"
+                f"record.points[{i}] = {spelled(at)} lies on {place}, where the stress of rigid "
+                "blocks is off by up to 50 %, however small they are: half a block away, "
+                f"{block / 2:.3g} m, it converges"
             )
 
 
