@@ -153,6 +153,7 @@ MISTAKES = {
         "load.shape = 'ricker' -> load.period": "is required for load.shape = 'ricker'",
         "load.shape = 'triangle'; load.rise = 0.01 -> load.decay": REQUIRED,
         "load.shape = 'table' -> load.file": REQUIRED,
+        "load.shape = 'table'; load.file = 'gone.csv'": "No such file",
     },
     # the strength of joints
     STRONG: {
@@ -265,20 +266,14 @@ IN_TEXT = {
     ),
 }
 
+#: Beside those of `field_cases/test_records.py`, which a load and a curve have in common.
 HISTORIES = {
     "empty history": ("", "two or more numbers"),
-    "history of one row": ("0,0\n", "at least 2 samples, not 1"),
-    "unsorted history": ("0,0\n2,1\n1,0\n", "line 3: time = 1 ... later than ... 2"),
-    "a time twice": ("s,Pa\n0,0\n0,1\n", "line 3: time = 0 ... is repeated"),
     "three columns": ("0,0,0\n1,1,1\n", "two columns ... not 3"),
-    "a column short": ("0;0\n1\n2;1\n", "line 2 ... 2 numbers ... not 1"),
     "an empty cell": ("0;0\n1;\n2;1\n", "line 2: value = nan or empty ... finite number"),
-    "a unit of another quantity": ("t,v (mm/s)\n0,0\n1,1\n", "unit of v = 'mm/s' ... MPa"),
-    "NaN in a history": ("# blast\n0,0\n1,nan\n", "line 3: value = 'nan' ... a number"),
     "binary history": (b"\x93NUMPY\xff\x00", "neither text (line 1 ... nor a seismogram in SAC"),
     "history in Latin-1": ("Zeit (\xb5s),p\n0,0\n1,1\n".encode("latin-1"), "not UTF-8 text"),
 }
-NO_HISTORIES = {"gone.csv": "No such file", "": "directory", "pipe": "regular file"}
 
 OVERRIDES = {
     "pillar.width=1": "pillar.width = 1 ... length, side, block",
@@ -359,24 +354,13 @@ def test_the_mesh_is_found_beside_the_scene(tmp_path, monkeypatch, changed):
     assert numerics.model_copy().mesh_path == tmp_path / "pillar.msh"
 
 
-@pytest.fixture
-def table_line(tmp_path, changed, line_of):
-    """Return a function of a load's file that returns the line of a scene with it."""
-    keys = "no load.period; load.shape = 'table'; load.amplitude = 1.0; load.file = '{}'"
-    return lambda file: line_of(write(tmp_path / "scene.toml", changed(GOOD, keys.format(file))))
-
-
 @pytest.mark.parametrize("name", HISTORIES)
-def test_bad_history_is_one_line(name, tmp_path, table_line):
+def test_bad_history_is_one_line(name, tmp_path, changed, line_of):
     content, words = HISTORIES[name]
     write(tmp_path / "blast.csv", content)
-    assert_words(f"load.file = 'blast.csv' ... {words}", table_line("blast.csv"))
-
-
-@pytest.mark.parametrize("file", NO_HISTORIES)
-def test_history_that_cannot_be_read(file, tmp_path, table_line):
-    os.mkfifo(tmp_path / "pipe")
-    assert NO_HISTORIES[file] in table_line(file)
+    keys = f"{SHAPED}; load.shape = 'table'; load.file = 'blast.csv'"
+    line = line_of(write(tmp_path / "scene.toml", changed(GOOD, keys)))
+    assert_words(f"load.file = 'blast.csv' ... {words}", line)
 
 
 def test_scene_that_cannot_be_read(tmp_path, line_of):

@@ -54,8 +54,6 @@ def test_time_between_snapshots_is_a_whole_number_of_samples(scene_with, fields,
     [
         ({"record.fields": 4.9e-5}, "between the sampling interval 5e-05 s and time.duration"),
         ({"record.fields": 0.2}, "time.duration = 0.12"),
-        ({"record.fields": 0.0}, "greater than 0"),
-        ({"record.fields": "often"}, "a number"),
         ({"record.fields": 5e-5, "time.duration": 0.6}, "at most 10,000 snapshots"),
     ],
 )
