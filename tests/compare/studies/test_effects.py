@@ -39,6 +39,7 @@ OF_LAW = {
 SLIDING = {"slip", *(part.name for part in PARTS if part.along)}
 JOINT = {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "spacing": 2.0}
 ROWS, COLUMNS_OF_BLOCKS = ({"name": f"{dip:g}", "dip": dip} | JOINT for dip in (0.0, 90.0))
+STIFF = {"normal_stiffness": 2e10}
 PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
 
@@ -172,8 +173,8 @@ def test_effects_are_measured_by_leaving_them_out_and_once(pillar, known, tmp_pa
 def test_an_effect_that_stays_has_a_reason_and_no_number(known):
     """A side that a wave enters. Rock that cannot be run, above its critical step, has no row."""
     sides = {"bottom": "quiet", "left": "periodic", "right": "periodic"}
-    rock = {"continuum": {"step_fraction": 1.5}}
-    scene = mass(boundaries=sides, waves=[WAVE], loads=[], numerics=rock)
+    rock, joints = {"continuum": {"step_fraction": 1.5}}, [ROWS, COLUMNS_OF_BLOCKS | STIFF]
+    scene = mass(boundaries=sides, joint_sets=joints, waves=[WAVE], loads=[], numerics=rock)
     point = ("a/b", scene), effects.BLOCKS
     rows = {one["effect"]: one for one in effects.timed(point, effects.measure(point))}
     quiet, periodic = rows["quiet sides"], rows["periodic sides"]
