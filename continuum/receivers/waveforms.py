@@ -18,13 +18,12 @@ def recorded(
 ) -> xr.Dataset:
     """Return the samples at these times, the first ones, as a result with attributes."""
     samples = Samples(*(one[:, : len(times)] for one in samples))
-    terms, energy = ledger(scene, problem, samples)
-    if not scene.is_column:
-        waves = of_rock_mass(problem.body.components, samples)
-    else:
+    if scene.is_column:
         waves = of_pillar(problem, samples)
-        energy = None if energy is None else extent_of(scene, problem.body) * energy
-    return dataset(scene, f"continuum-{about['model']}", times, waves, energy, terms, **about)
+    else:
+        waves = of_rock_mass(problem.body.components, samples)
+    ledger, engine = ledger_of(scene, problem, samples), f"continuum-{about['model']}"
+    return dataset(scene, engine, times, waves, **ledger, **about)
 
 
 def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
@@ -52,24 +51,20 @@ def vectors(rows: np.ndarray, size: int, whole: int = 0) -> np.ndarray:
     return np.pad(found, ((0, 0), (0, 0), (0, max(0, whole - size))))
 
 
-def ledger(
-    scene: AnyScene, problem: Problem, samples: Samples
-) -> tuple[tuple[str, ...], np.ndarray | None]:
-    """Return the terms that a ledger has, and the energies; None where they are not recorded. What
+def ledger_of(scene: AnyScene, problem: Problem, samples: Samples) -> dict[str, Any]:
+    """Return the energies that the scene has, and which they are, as `dataset` takes them. What
     prestressed rock gives off where walls of openings give way counts with what it stores."""
-    parts = problem.parts
-    there = {
-        "fracture": parts is not None and parts.softening,
-        "friction": parts is not None and parts.limited,
-        "gravity": scene.gravity is not None,
-    }
-    terms = tuple(one for one in TERMS if there.get(one, True))
-    if not samples.energy.size:
-        return terms, None
-    found = samples.energy.copy()
+    parts, found = problem.parts, samples.energy.copy()
+    if not found.size:
+        return {}
+    has = {"friction": parts and parts.limited, "fracture": parts and parts.softening}
+    has["gravity"] = scene.gravity is not None
     if scene.excavated and scene.gravity is None:
         found[TERMS.index("elastic")] += found[TERMS.index("gravity")]
-    return terms, found[[TERMS.index(one) for one in terms]]
+    if scene.is_column:
+        found *= extent_of(scene, problem.body)
+    rows = [row for row, term in enumerate(TERMS) if has.get(term, True)]
+    return {"energy": found[rows], "terms": tuple(TERMS[row] for row in rows)}
 
 
 def of_rock_mass(dim: int, samples: Samples) -> dict[str, np.ndarray]:
