@@ -94,9 +94,9 @@ def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:
 
 def _recovered(
     found: SceneBody, x: np.ndarray, at: Places, share: np.ndarray
-) -> tuple[csr_matrix, csr_matrix | None]:
+) -> tuple[csr_matrix, csr_matrix]:
     """Return the stress at points x [m, d], all components of one after the other [m n, freedoms],
-    and that of dashpots by the velocity; None without these.
+    and that of dashpots by the velocity.
 
     Stress from displacements of order p converges as h^(p + 1) at the Gauss points of cells
     (Barlow, Int. J. Numer. Meth. Eng. 10, 1976). A polynomial of order p + 1 through those of the
@@ -117,10 +117,8 @@ def _recovered(
     of_stress = found.moduli(stress_components(dim).values())[found.of_cell[cells]]
     gradient = at_reference(body, row, cells, places).gradient
     entries = -np.einsum("nscj,nkj,n->nskc", of_stress, gradient, weights)
-    elastic = matrix_of(body, row, cells, entries, len(x))
-    if not lag.any():
-        return elastic, None
-    return elastic, matrix_of(body, row, cells, lag[cells, None, None, None] * entries, len(x))
+    viscous = matrix_of(body, row, cells, lag[cells, None, None, None] * entries, len(x))
+    return matrix_of(body, row, cells, entries, len(x)), viscous
 
 
 def _patch(

@@ -244,9 +244,7 @@ class Implicit:
         forces = now.forces
         out.velocity[:, s] = read.motion @ now.v
         out.displacement[:, s] = read.motion @ now.u
-        out.stress[:, s] = read.stress @ self.last[2] + read.constant
-        if read.viscous is not None:
-            out.stress[:, s] += read.viscous @ now.v
+        out.stress[:, s] = read.stress @ self.last[2] + read.constant + read.viscous @ now.v
         if read.inertia is not None:
             balancing = forces.whole / self.balance.mass
             held = self.problem.held.freedom

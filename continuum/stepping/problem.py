@@ -44,7 +44,7 @@ class Readings(NamedTuple):
     """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
     positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
     is at u = 0 [joints d]; jump [joints d, points d]. viscous : stress of the rate by rock's
-    dashpots; inertia : of the acceleration (with mass-proportional damping); None without."""
+    dashpots; inertia : of the acceleration (with mass-proportional damping), None without."""
 
     motion: csr_matrix
     stress: csr_matrix
@@ -52,7 +52,7 @@ class Readings(NamedTuple):
     traction: csr_matrix
     carried: np.ndarray
     jump: csr_matrix
-    viscous: csr_matrix | None = None
+    viscous: csr_matrix
     inertia: csr_matrix | None = None
 
 

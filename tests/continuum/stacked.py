@@ -47,7 +47,7 @@ def readings(body, nodes=()):
     rows = np.arange(freedom.size)
     motion = csr_matrix((np.ones(freedom.size), (rows, freedom)), (rows.size, dim * len(body.x)))
     none, of_points = csr_matrix((0, dim * len(body.x))), csr_matrix((0, dim * points))
-    return Readings(motion, none, np.zeros(0), of_points, np.zeros(0), of_points)
+    return Readings(motion, none, np.zeros(0), of_points, np.zeros(0), of_points, none)
 
 
 def joined(count, shear=True, eta=None, **strengths):
