@@ -68,6 +68,9 @@ def plan_of(
             log.warning(line)
     refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
+    if problem.held.freedom.size == problem.body.mass.size:
+        allowed = "hold every node of the mesh, so that nothing moves: it needs smaller elements"
+        raise SceneError(scene.where, scene.side_table, None, allowed)
     implicit = scene.numerics.continuum.scheme == "implicit"
     scaled, plain = None if implicit else scaled_mass(problem), (found, problem)
     if scaled is not None:

@@ -19,6 +19,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.material.closure import stresses
 from jointwave.dem.blocks.rigid import constants
 from jointwave.dem.contacts.chunks import LANES, Chunks
 from jointwave.dem.contacts.faces import Contacts
@@ -28,7 +29,7 @@ from jointwave.dem.kernel.leapfrog import make_stepper
 from jointwave.dem.kernel.model import Model, State, held_by, samples_for, state_at_rest
 from jointwave.dem.sides.loads import Loads
 from jointwave.dem.system import BlockSystem
-from jointwave.joints.law import IN_MOTION, sticking
+from jointwave.joints.law import IN_MOTION, Law, sticking
 from jointwave.results.arrays import copied, fill
 
 STEPS_AT_ONCE = 10  # between two looks at the forces
@@ -41,6 +42,8 @@ PATIENCE = 80
 STEADY = 0.9  # of a way to that in the same time before: 1 at a constant speed, 3 from rest
 PARTS = 40  # in which walls of openings are released where joints may slip or open
 STUCK = 1e-4  # out-of-balance ratio of joints that neither slip nor open, before they may
+FELT = 1e-4  # of the force of loads and waves on a block: what may be left beside them, by default
+LEAST = 1e-12  # out-of-balance ratio that is asked for, by default
 RESISTED = 1e-9  # of the largest resistance: below it there is none
 LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
 
@@ -191,6 +194,11 @@ class BlockRelaxation:
         self.mass = own.inertia.ravel()
         weight = float(np.linalg.norm(own.gravity) * blocks.inertia[:, 0].sum())
         self.scale = weight + (blocks.pressed if stress is not None else 0.0)
+        numerics, area = self.scene.numerics.dem, blocks.contacts.area
+        wave = FELT * stresses(self.scene)[1] * float(np.median(area) if area.size else 0.0)
+        self.goal = numerics.static_tolerance
+        if wave and self.scale and "static_tolerance" not in numerics.model_fields_set:
+            self.goal = min(self.goal, max(wave / self.scale, LEAST))
         self.masses, self.centroid, self.most_steps = masses, blocks.centroid, blocks.static_steps
         self.rotation = np.ones(masses.shape[1])
         if model.form.finite:  # whose state has momenta, and half the vectors of small rotations
@@ -221,7 +229,9 @@ class BlockRelaxation:
         if self.state.history is None or not self.model.form.points:
             return 0
         before, own = copied(self.state), self.model.laws.copy()
+        closes = Law._fields.index("maximum_closure")
         self.model.laws[:] = sticking(own)
+        self.model.laws[closes] = own[closes]
         self.state.history[:] = state_at_rest(self.model).history
         rest = self.relax(STUCK)
         self.model.laws[:] = own
@@ -245,7 +255,7 @@ class BlockRelaxation:
         block that moves on is another thing than a residual that is still too large.
         """
         scene, tolerance = self.scene, self.scene.numerics.dem.static_tolerance
-        rest = self.relax(tolerance)
+        rest = self.relax(self.goal)
         if rest.ratio <= tolerance:
             return rest
         key, remedy = "gravity", unborne or "static = false starts without it"

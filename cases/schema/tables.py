@@ -212,7 +212,8 @@ class BlockStepping(Table):
 
     step_fraction: Positive = 0.2  #: of the critical step
     allow_unstable: bool = False  #: allow a step above the critical one
-    static_tolerance: Positive = 1e-8  #: out-of-balance force ratio of the static state
+    #: out-of-balance force ratio of the static state; absent: less where small loads would feel it
+    static_tolerance: Positive = 1e-8
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
 

@@ -62,11 +62,8 @@ def _closing(scene: RockMass) -> Iterator[tuple[str, float, float, float]]:
     for side in scene.boundaries.sides("quiet"):
         for corners, n in outline.faces_of(side):
             places = (corners + corners.mean(axis=0)) / 2 - NEAR_SIDE * outline.size * n
-            normals, region = np.tile(n, (len(places), 1)), region_at(scene.regions, places)
-            rest, closed = (
-                np.einsum("i,mij,j->m", n, impedances(scene, normals, places, region, more=x), n)
-                for x in (0.0, added)
-            )
+            given = np.tile(n, (len(places), 1)), places, region_at(scene.regions, places)
+            rest, closed = (n @ impedances(scene, *given, more=x) @ n for x in (0.0, added))
             k = int((closed / rest).argmax())
             yield f"boundaries.{side}", added, float(rest[k]), float(closed[k])
 

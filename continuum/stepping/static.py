@@ -170,7 +170,8 @@ class _Static:
             nonlocal after
             trial[free] = u
             found = own.forces(trial, still, trial - self.u, 1.0, self.past, still, share)
-            self.size, after, force = float(found.size[0]), found.past, found.whole
+            self.size = max(float(found.size[0]), float(np.abs(found.loads).max(initial=0.0)))
+            after, force = found.past, found.whole
             if self.hold is not None:
                 force = force - self.hold @ trial
             borne = drag * own.mass * (trial - self.u)
@@ -181,7 +182,8 @@ class _Static:
 
         def correction(rest: np.ndarray) -> np.ndarray:
             matrix = self.matrix + drag * diags(own.mass)
-            if not trial.any():  # first as if no joint opened or slid: then what stands is found
+            if not trial.any() and own.steady[free].any():
+                # First as if no joint opened or slid: then what stands is found.
                 return own.factors(matrix + self.sticking).solve(share * own.steady[free])
             tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
             return own.factors(matrix, tangents).solve(rest)

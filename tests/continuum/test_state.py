@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from jointwave.cases.errors import SceneError
 from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import at_rest
 from jointwave.continuum.run import simulate
@@ -37,6 +38,27 @@ def test_a_prestress_is_in_equilibrium_where_joints_hold_it(rock_mass):
     assert np.abs(found.velocity).max() < 1e-13  # under 6 MPa rock moves at up to 0.5 m/s
     assert np.abs(found.stress[0] - [4e6, 6e6, 5e5]).max() < 1e-6
     assert np.abs(found.traction[0] - [P @ n @ n, P @ n @ s]).max() < 1e-6
+
+
+def test_joints_give_way_to_a_prestress_between_fixed_sides_without_weight(rock_mass):
+    """No force acts but what the joint cannot carry: a stress of 1 MPa that pulls is gone, and of
+    shear what friction carries of the pressure is left."""
+    held = dict.fromkeys(("left", "right", "bottom", "top"), "fixed")
+    tables = {"gravity": {"acceleration": 0.0}, "boundaries": held, "domain": {"size": [6.0, 6.0]}}
+    tables["record"] = {"joints": [[3.0, 3.0]]}
+    bed = {"dip": 0.0, "through": [3.0, 3.0]}
+    pulled = rock_mass(bed | {"tension": False}, prestress={"xx": 0.0, "yy": -1e6}, **tables)
+    assert np.abs(simulate(pulled).traction).max() < 1e-3
+    shear = {"xx": 1e6, "yy": 1e6, "xy": 9e5}
+    left = simulate(rock_mass(bed | {"friction_angle": 30.0}, prestress=shear, **tables)).traction
+    assert np.abs(left[0, -1]).values == pytest.approx([1e6, 1e6 / np.sqrt(3)], rel=1e-6)
+
+
+def test_rock_whose_every_node_is_held_is_refused(rock_mass):
+    held = dict.fromkeys(("left", "right", "bottom", "top"), "fixed")
+    own = {"domain": {"size": [4.0, 4.0]}, "continuum": {"size": 4.0, "order": 1}}
+    with pytest.raises(SceneError, match="boundaries: hold every node of the mesh"):
+        simulate(rock_mass(boundaries=held, **own))
 
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
