@@ -78,10 +78,7 @@ def of_sources(
     if scene.gravity is None or scene.gravity.static:  # else all falls
         for receiver, at in arrivals:
             if at >= end:
-                yield (
-                    f"record.{receiver} is reached at {at:.4g} s: after the end of the scene at "
-                    f"time.duration = {end:g} s"
-                )
+                yield f"record.{receiver} is reached at {at:.4g} s: {_after(end)}"
     for side, stress, before, under in closing:
         if (reflects := (under - before) / (under + before)) > MOST_REFLECTED:
             yield (
@@ -95,26 +92,21 @@ def of_sources(
 
 def _of_pulse(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
     """crossings : of the rock by a wave in a period of the highest frequency."""
+    longer = f"is longer than the scene, time.duration = {end:g} s"
     if pulse.shape == "step":
         return
     if pulse.history is not None:
         yield from _of_table(table, pulse, end, crossings)
     elif pulse.rise is not None and pulse.rise > end:
-        yield (
-            f"{table}.rise = {pulse.rise:g} s is longer than the scene, time.duration = {end:g} s"
-        )
+        yield f"{table}.rise = {pulse.rise:g} s {longer}"
     elif pulse.period and (wavelet := _wavelet(pulse)) and wavelet.centre > end:
         yield (
             f"{table}.period = {pulse.period:g} s: the wavelet peaks at "
-            f"{wavelet.centre / pulse.period:g} periods, after the end of the scene at "
-            f"time.duration = {end:g} s"
+            f"{wavelet.centre / pulse.period:g} periods, {_after(end)}"
         )
     elif pulse.period and pulse.period > end:
         meant = f"; {pulse.period:g} Hz is {1 / pulse.period:g} s" if pulse.period > 1 else ""
-        yield (
-            f"{table}.period = {pulse.period:g} s is longer than the scene, time.duration = "
-            f"{end:g} s{meant}"
-        )
+        yield f"{table}.period = {pulse.period:g} s {longer}{meant}"
     elif pulse.period and STATIC < crossings < 1e3 * STATIC:
         yield (
             f"{table}.period = {pulse.period:g} s: a wave crosses the rock {crossings:.3g} times "
@@ -140,10 +132,11 @@ def _of_table(table: str, pulse: Pulse, end: float, crossings: float) -> Iterato
             f"({why}): in seconds they are {last / 1e3:g}"
         )
     elif late:
-        yield (
-            f"{table}.file = {file!r} peaks at {peak:g} s, after the end of the scene at "
-            f"time.duration = {end:g} s"
-        )
+        yield f"{table}.file = {file!r} peaks at {peak:g} s, {_after(end)}"
+
+
+def _after(end: float) -> str:
+    return f"after the end of the scene at time.duration = {end:g} s"
 
 
 def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> bool:
