@@ -8,6 +8,7 @@ import traceback
 from contextlib import suppress
 from io import TextIOWrapper
 from pathlib import Path
+from typing import Any
 
 from jointwave.cases.errors import InterruptedRun, SceneError, UnstableError, printable
 from jointwave.compare.runs.checkpoint.signals import Ended, watched
@@ -27,7 +28,7 @@ def main() -> None:
     # Most of what a search would see has been imported, and stays: it took a third of a short run.
     gc.set_threshold(100_000)
     atexit.register(gc.freeze)
-    processes = Processes()
+    processes, sys.unraisablehook = Processes(), _unraisable
     try:
         signals = watched()
         processes = started()
@@ -38,6 +39,8 @@ def main() -> None:
     except BrokenPipeError:  # the reader has seen enough
         code = 1
     except (Exception, Ended, KeyboardInterrupt) as error:
+        if (asked := watched().asked) and not isinstance(error, UnstableError):
+            error = Ended(asked)  # which a library may have caught
         lines, code = _told(error)
         if code == 1 and os.environ.get(SHOWN):
             traceback.print_exc(file=processes.stderr)
@@ -45,6 +48,12 @@ def main() -> None:
     finally:
         _flush()
     sys.exit(code)
+
+
+def _unraisable(found: Any) -> None:
+    """Say nothing of a signal in a callback, which a compiler calls; it acts after that."""
+    if not isinstance(found.exc_value, Ended):
+        sys.__unraisablehook__(found)
 
 
 def run(arguments: list[str]) -> int:

@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -114,3 +115,22 @@ def test_second_signal_does_not_wait(monkeypatch):
     assert signals.asked == signal.SIGINT
     with pytest.raises(Ended, match="interrupted"):
         signals._arrived(signal.SIGINT, None)
+
+
+CALLED_BACK = """
+import ctypes, os, signal
+from jointwave.compare.cli import program
+
+def compiling(arguments):
+    ctypes.CFUNCTYPE(None)(lambda: os.kill(os.getpid(), signal.SIGTERM))()
+    raise RuntimeError("no compiled object yet")
+
+program.run = compiling
+program.main()
+"""
+
+
+def test_a_signal_in_a_callback_of_a_compiler_ends_the_program_in_one_line():
+    """ctypes takes no exception out of a callback, and LLVM has no object then."""
+    done = subprocess.run([sys.executable, "-c", CALLED_BACK], capture_output=True, text=True)
+    assert (done.stderr, done.returncode) == ("jointwave: terminated\n", 143)
