@@ -14,7 +14,7 @@ from jointwave.results.dataset import scene_hash
 
 SCENES = Path(__file__).parent / "scenes"
 UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about
-REPEATS = 10
+REPEATS = 5
 BLOCKS = 1000  # with every effect, at most
 
 
