@@ -4,52 +4,83 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.material.calibrate import Properties
+from jointwave.cases.material.calibrate import Properties, calibrate
+from jointwave.cases.material.closure import stress_in_reach
+from jointwave.cases.schema.scene import Scene
 from jointwave.joints.shear import UNLIMITED
 
-#: Over an ordinary joint: the stiffness of one that differs from it in strength alone, where the
-#: homogenised bar holds it already. It makes the rock softer by a tenth of one joint.
-RIGID = 10.0
+#: Of an ordinary joint's compliance: what a layer takes out of the homogenised rock that differs
+#: from it in strength alone.
+SHARE = 0.1
+LEAST = 1e-300  # m/Pa: above zero
 
 
 class Resolved(NamedTuple):
     """The joints that a model resolves, by their number in the pillar.
 
     number : int array [n]. stiffness, shear_stiffness : [pillar's joints], Pa/m. time_constant :
-    eta of theirs, s; None without dashpots.
+    eta of theirs, s; None without dashpots. less : compliance of those that stiffen that the rock
+    has already, m/Pa. share : of an ordinary joint's compliance, which the homogenised rock beside
+    a layer loses to it. Both [pillar's joints].
     """
 
     number: np.ndarray
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
     time_constant: np.ndarray | None
+    less: np.ndarray
+    share: np.ndarray
 
 
-def resolved_joints(
-    p: Properties, model: str, shears: bool, meshed: tuple[int, ...] = ()
-) -> Resolved:
-    """Return all joints ("jointed"), or the soft layers by their excess ("equivalent").
+def layers_of(scene: Scene) -> dict[int, float]:
+    """Return the thickness (m) of the joints of a pillar that are layers of rock, in order."""
+    found = zip(calibrate(scene).soft.tolist(), scene.soft_layers, strict=True)
+    return dict(sorted((joint, one.thickness) for joint, one in found if one.thickness is not None))
 
-    shears : whether the motion has components along the joints. meshed : joints that are layers of
-    rock in the mesh.
+
+def resolved_joints(scene: Scene, model: str, shears: bool, loses: bool = True) -> Resolved:
+    """Return all joints ("jointed"), or the soft layers by their excess ("equivalent"), and what
+    the rock beside them loses to those that are meshed or can fail, and to those that can be
+    stiffer than ordinary joints.
+
+    shears : whether the motion has components along the joints. loses : whether rock can: it is of
+    the scene, in a mesh of its blocks.
     """
+    p, meshed = calibrate(scene), list(layers_of(scene))
+    less, share = np.zeros((2, p.block_count - 1))
     if model == "jointed":
         assert p.own_stiffness is not None and p.own_shear_stiffness is not None
-        number, etas = p.resolved, p.own_time_constant
-        normal, shear = p.own_stiffness, p.own_shear_stiffness
-    else:
-        number, etas = p.soft, p.joint_time_constant
-        normal = _excess(p.excess_compliance, p.regular)
-        shear = _excess(p.excess_shear_compliance, p.regular_shear_stiffness)
-        differs = (p.excess_compliance != 0) | (shears & (p.excess_shear_compliance != 0))
-        differs |= _fails(p, shears)
-        number = number[differs[number]]
-    return Resolved(np.setdiff1d(number, meshed), normal, shear, etas)
+        number, etas = np.setdiff1d(p.resolved, meshed), p.own_time_constant
+        return Resolved(number, p.own_stiffness, p.own_shear_stiffness, etas, less, share)
+    excess, ordinary = p.excess_compliance, p.half_joint[:, 1:] + p.half_joint[:, :-1]
+    excess = np.array([excess, p.excess_shear_compliance])
+    alike = (excess == 0)[: 1 + shears]
+    number, etas = p.soft[(~alike.all(axis=0) | _fails(p, shears))[p.soft]], None
+    if loses:
+        share[number] = SHARE * alike.any(axis=0)[number]
+        share[meshed] = 1.0
+        closes, of = _closing(scene, excess[0] + ordinary[0])
+        less[closes] = np.minimum(of, ordinary[0, closes])
+        share[closes] = 1 - less[closes] / np.maximum(ordinary[0, closes], LEAST)
+    # Where the rock loses nothing, a joint makes it softer by that share of an ordinary one.
+    least = SHARE / np.stack(np.broadcast_arrays(p.regular, p.regular_shear_stiffness))
+    own = np.where(excess + share * ordinary == 0, least, excess + share * ordinary)
+    normal, shear = 1 / own
+    if p.joint_time_constant is not None:
+        eta, other = p.excess_time_constant, p.ordinary_time_constant
+        etas = (excess[0] * eta + share * ordinary[0] * other) / own[0]
+    return Resolved(np.setdiff1d(number, meshed), normal, shear, etas, less, share)
 
 
-def _excess(compliance: np.ndarray, regular: float | np.ndarray) -> np.ndarray:
-    with np.errstate(divide="ignore"):
-        return np.where(compliance == 0, RIGID * regular, 1 / compliance)
+def _closing(scene: Scene, compliance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which joints of these compliances (m/Pa) stiffen, int array [n], and half of what is
+    left of that under the stress in reach [n], m/Pa."""
+    most = calibrate(scene).maximum_closure
+    if most is None:
+        return np.zeros(0, int), np.zeros(0)
+    closes = np.flatnonzero(most < UNLIMITED)
+    own = compliance[closes]
+    return closes, own / (1 + stress_in_reach(scene) * own / most[closes]) ** 2 / 2
 
 
 def _fails(p: Properties, shears: bool) -> np.ndarray:

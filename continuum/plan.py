@@ -1,6 +1,7 @@
 """A run before its first step: the body of a scene, what acts on it, and how it is stepped."""
 
 import logging
+from collections.abc import Iterator
 from math import ceil
 from typing import Any, NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
@@ -17,6 +19,7 @@ from jointwave.continuum.mesh.size import of_coarse_cells, resolved_period
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import SceneBody, body_of
 from jointwave.continuum.space import compat
+from jointwave.continuum.space.model import Body, JumpOperator
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.scaling import scaled_mass
@@ -28,6 +31,7 @@ STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to
 PRODUCT_RATE, FACTOR_RATE = 1e9, 3e8
 #: Operations a second of a factorisation, and what an implicit step costs besides, s.
 FACTORISATION_RATE, OVERHEAD = 1e9, 1e-3
+STIFFER = 1.2  # times: of linear elements that are worth a line
 ITERATIONS = 3  # of Newton's method where joints open, slide or break
 
 
@@ -66,6 +70,8 @@ def plan_of(
         cells = compat.cell_corners(found.body.mesh), *map(found.of_cells, ("stiffness", "density"))
         for line in of_coarse_cells(scene, found.scripted, *cells):
             log.warning(line)
+    for line in of_stiff_elements(found):
+        log.warning(line)
     refuse_beyond_strength(found.scene)
     problem = problem_of(scene, found)
     if problem.held.freedom.size == problem.body.mass.size:
@@ -90,6 +96,44 @@ def plan_of(
     }
     refuse_beyond_memory(scene, parts)
     return Plan(found, problem._replace(comm=comm), choice, critical)
+
+
+def of_stiff_elements(found: SceneBody) -> Iterator[str]:
+    """Say how many times too stiff linear elements are where blocks turn and pillars bend."""
+    scene, body = found.scene, found.body
+    if scene.is_column:
+        turns = is_spatial(scene) and scene.motion.rotation != "none" and not scene.mesh_path
+    else:
+        turns = len(scene.joint_sets) > 1 or not scene.boundaries.sides("periodic")
+    if scene.numerics.continuum.order > 1 or body.x.shape[1] == 1 or not turns:
+        return
+    ratios = {} if body.joints is None else {"joints": _of_joints(found, body.joints)}
+    if scene.is_column:
+        ratios["rock"] = _of_bending(body, scene.pillar.side)
+    if max(ratios.values(), default=0.0) > STIFFER:
+        times = " and ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items())
+        yield (
+            f"numerics.continuum.order = 1: these elements make {times} times as stiff as they are "
+            "where blocks turn or bend; order 2 is exact there"
+        )
+
+
+def _of_joints(found: SceneBody, joints: JumpOperator) -> float:
+    """Return the second moments that joints have at their points, over those of their faces."""
+    faces = found.blocks.contacts
+    exact = np.trace(faces.second_moment, axis1=1, axis2=2)
+    inner = joints.column < len(exact)  # not across periodic sides
+    column, weight = joints.column[inner], joints.weight[inner]
+    away = ((joints.place[inner] - faces.centroid[column]) ** 2).sum(axis=1)
+    return float(weight @ away / exact[np.unique(column)].sum())
+
+
+def _of_bending(body: Body, side: float) -> float:
+    """Return the stiffness of a pillar's rock as it bends, its width held, over that of a beam."""
+    x, across, along = body.x, np.zeros_like(body.x), np.zeros_like(body.x)
+    along[:, 1], across[:, 1], across[:, 0] = x[:, 1], x[:, 0] * x[:, 1], -(x[:, 1] ** 2) / 2
+    bent, longer = (u.ravel() @ (body.stiffness @ u.ravel()) for u in (across, along))
+    return float(12 * bent / longer / side**2)
 
 
 def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:

@@ -19,7 +19,6 @@ from jointwave.continuum.receivers.points import readings_of
 from jointwave.continuum.receivers.sections import readings_of_pillar
 from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Body, directions
-from jointwave.continuum.space.rock import layers_of
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
 from jointwave.joints.law import Law, law, stiffest
@@ -33,21 +32,23 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
         return body, None
     if scene.is_column:
         p, shears = calibrate(scene), body.components > 1
-        resolved = resolved_joints(p, found.model, shears, tuple(layers_of(scene)))
+        loses = not (found.scripted or scene.mesh_path)
+        resolved = resolved_joints(scene, found.model, shears, loses)
         which, column = np.unique(joints.column, return_inverse=True)
         body = body._replace(joints=joints._replace(column=column.reshape(-1)))
         normal, shear = resolved.stiffness, resolved.shear_stiffness if shears else None
         etas, tension, strengths = resolved.time_constant, p.tension, p.strengths(shears, which)
+        less = resolved.less[which]
     else:
         sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
         which = np.clip(which, 0, len(sets) - 1)  # cuts through rock are no joints
         stiffness = [[one.normal_stiffness, one.shear_stiffness] for one in sets]
         normal, shear = np.array(stiffness, dtype=float).T
         etas, tension = set_time_constants(scene), np.array([i.tension is not False for i in sets])
-        strengths = strength_of(sets, which).strengths()
+        strengths, less = strength_of(sets, which).strengths(), np.zeros(len(which))
     etas, shear = (None if one is None else one[which] for one in (etas, shear))
     own = law(normal[which], etas, tension[which], shear_stiffness=shear, **strengths)
-    return body, own if own.maximum_closure is None else own._replace(rock_compliance=0.0)
+    return body, own if own.maximum_closure is None else own._replace(rock_compliance=-less)
 
 
 def problem_of(scene: AnyScene, found: SceneBody) -> Problem:

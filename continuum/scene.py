@@ -20,7 +20,7 @@ from jointwave.cases.partition.shape import shape_of
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-from jointwave.continuum.joints import resolved_joints
+from jointwave.continuum.joints import layers_of, resolved_joints
 from jointwave.continuum.mesh.boxes import along_edges, box_mesh, boxes_of, extents
 from jointwave.continuum.mesh.conforming import Conforming, marks_of
 from jointwave.continuum.mesh.given import mesh_of_file
@@ -153,22 +153,29 @@ def _simplices(
 
 def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
     """Return the body of a pillar in so many dimensions; columns of joints are their numbers."""
-    numerics, size = scene.numerics.continuum, 3 if dim == 1 and is_spatial(scene) else dim
-    layers = materials.layers_of(scene) if numerics.mesh is None else {}
-    resolved = resolved_joints(calibrate(scene), model, size > 1, tuple(layers)).number
+    p, numerics = calibrate(scene), scene.numerics.continuum
+    size = 3 if dim == 1 and is_spatial(scene) else dim
+    layers = layers_of(scene) if numerics.mesh is None else {}
+    joints = resolved_joints(scene, model, size > 1, numerics.mesh is None)
+    halves = np.append(joints.share, 0.0) + np.append(0.0, joints.share)
+    less = {int(k): float(halves[k]) for k in np.flatnonzero(halves)}
     if numerics.mesh is None:
         blocks = blocks_of_pillar(scene, dim, layers)
-        joint = np.arange(calibrate(scene).block_count - 1)
+        region, each = blocks.body.region.copy(), elements_along(scene, model)
+        own = np.flatnonzero(region < len(each))  # not of layers
+        region[own[list(less)]] = len(each) + len(layers) + np.arange(len(less))
+        blocks = replace(blocks, body=replace(blocks.body, region=region))
+        joint = np.arange(p.block_count - 1)
         joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # a layer's two contacts have one
-        resolved = np.where(np.isin(joint, resolved), joint, -1)
-        marks = marks_of(blocks, resolved, blocks.body.side, SIDES)
-        each = np.append(elements_along(scene, model), np.ones(len(layers), int))
+        marked = np.where(np.isin(joint, joints.number), joint, -1)
+        marks = marks_of(blocks, marked, blocks.body.side, SIDES)
+        each = np.concatenate([each, np.ones(len(layers), int), each[p.segment[list(less)]]])
         mesh = _mesh_of_pillar(scene, blocks, each, size)
     else:
-        blocks, mesh, marks = mesh_of_file(scene, resolved, dim)
+        blocks, mesh, marks = mesh_of_file(scene, joints.number, dim)
     flat = scene.motion.rotation == "none" and dim > 1
     elements = Elements(mesh, marks, numerics.order, size, flat=flat)
-    return scene, blocks, [], elements, materials.pillar(scene, model, size, dim)
+    return scene, blocks, [], elements, materials.pillar(scene, model, size, dim, less)
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:

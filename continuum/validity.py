@@ -104,7 +104,7 @@ def _of_pillar(scene: Scene, model: str, dim: int | None) -> Reasons:
         reasons += _beyond_the_homogenised(scene, p, shears)
     if not shears or any(there for there, _ in reasons):
         return reasons
-    joints = resolved_joints(p, model, shears)
+    joints = resolved_joints(scene, model, shears)
     stiffness = joints.shear_stiffness[joints.number]
     stiffer = "a joint stiffer than the others in shear cannot be added to the homogenised rock"
     softer = "intact rock is softer in shear than the rock mass"
@@ -121,8 +121,8 @@ def _beyond_the_homogenised(scene: Scene, p: Properties, shears: bool) -> Reason
     ]
     if p.maximum_closure is not None:
         stiffens = p.maximum_closure < UNLIMITED
-        closes = stiffens[ordinary].any() or (p.excess_compliance[stiffens] == 0).any()
-        reasons.append((bool(closes), "a homogenised bar has no ordinary joints with closure"))
+        closes = bool(stiffens[ordinary].any())
+        reasons.append((closes, "a homogenised bar has no ordinary joints with closure"))
     slides = shears and p.cohesion is not None and p.cohesion < UNLIMITED
     fails = (slides | p.across() | np.zeros_like(p.tension))[ordinary].any()
     rubs = shears and p.cohesion is None and p.friction is not None

@@ -13,7 +13,8 @@ Between rigid blocks the compliance c of the rock is in series with it. Of D = d
 
 whose only root with the sign of D is the traction, for any D. For a joint between deformable rock
 c is a millionth of its own compliance, so that it is at most a million times stiffer than
-initially where it would close beyond d_m.
+initially where it would close beyond d_m. Beside rock that has its joint's compliance already, c is
+negative, and the lesser root is the traction up to the stress at which d sigma / dD is infinite.
 """
 
 from math import log1p, sqrt

@@ -16,7 +16,13 @@ from weakref import ref
 import numpy as np
 
 from jointwave.cases.geometry.cell_complex import NO_SET
-from jointwave.cases.material.jointed_rock import JointedRock, joint_time_constant, mean_of, rock_of
+from jointwave.cases.material.jointed_rock import (
+    RIGID,
+    JointedRock,
+    joint_time_constant,
+    mean_of,
+    rock_of,
+)
 from jointwave.cases.material.properties import Properties, strength_of
 from jointwave.cases.partition.pillar import blocks_of_pillar, drawn
 from jointwave.cases.schema.joint import JointLaw
@@ -83,8 +89,8 @@ def _springs(
     half, half_rock = spacing * (1 / moduli - 1 / intact) / 2, thickness / intact / 2
     own, rock = _of_pairs(half) * _scattered(scene, segment), _of_pairs(half_rock)
     own_eta = _weighted(half[0], eta)
-    joint_eta = _joined(own[0], own_eta, rock[0], _weighted(half_rock[0], eta))
-    regular, ordinary_eta = 1 / (own[0] + rock[0]), joint_eta.copy()
+    rock_eta = _weighted(half_rock[0], eta)
+    regular, ordinary_eta = 1 / (own[0] + rock[0]), _joined(own[0], own_eta, rock[0], rock_eta)
     apart, areal_mass = _of_pairs(spacing / 2), _of_pairs(density * spacing / 2)
 
     for j, given, layer in zip(soft, scene.soft_layers, scene.layers, strict=True):
@@ -98,8 +104,10 @@ def _springs(
             own[1, j] = compliance * moduli[0, j] / moduli[1, j] - rock[1, j]
         if scene.damping.rayleigh is not None or layer.damping_ratio is not None:
             of = areal_mass[j], 1 / compliance
-            own_eta[j] = joint_eta[j] = joint_time_constant(scene, layer.damping_ratio, *of)
+            viscous = compliance * joint_time_constant(scene, layer.damping_ratio, *of)
+            own_eta[j] = max(0.0, viscous - rock[0, j] * rock_eta[j]) / own[0, j]
 
+    joint_eta = _joined(own[0], own_eta, rock[0], rock_eta)
     known, damped = bool(np.isfinite(intact).all()), bool(eta.any() or joint_eta.any())
     normal, shear = 1 / (own + rock)
     with np.errstate(divide="ignore"):
@@ -113,6 +121,7 @@ def _springs(
         "own_time_constant": own_eta if damped else None,
         "ordinary_time_constant": ordinary_eta,
         "regular": regular,
+        "half_joint": np.clip(half, 0.0, (1 - 1 / RIGID) * spacing / moduli / 2),
         "rock_between": rock[0],
     }
 

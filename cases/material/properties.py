@@ -90,6 +90,8 @@ class Properties(JointedRock, Strength):
     soft : int array, indices of the joints that [[soft_layers]] changes.
     weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
     regular : float array [N - 1], K'_n that the homogenised bar has at each joint, Pa/m.
+    half_joint : float array [2, N], what rock beside each joint has of the compliance of half an
+        ordinary one in the homogenised bar, m/Pa, normal and shear; never all that the rock has.
     rock_between : float array [N - 1], compliance of intact rock from centre to centre, m/Pa.
     parts : the rock of each segment as if it were alone; none where all blocks are equal, and all
         joints except the soft layers.
@@ -108,6 +110,7 @@ class Properties(JointedRock, Strength):
     soft: np.ndarray
     weld: np.ndarray
     regular: np.ndarray
+    half_joint: np.ndarray
     rock_between: np.ndarray
     segment: np.ndarray
     parts: tuple[JointedRock, ...]
@@ -187,6 +190,18 @@ class Properties(JointedRock, Strength):
     def excess_shear_compliance(self) -> np.ndarray:
         """The same of shear, m/Pa [N - 1]."""
         return _beyond(self.shear_stiffness, self.regular_shear_stiffness)
+
+    @property
+    def excess_time_constant(self) -> np.ndarray:
+        """The time constant of the excess, s [N - 1]: slow motion finds the joint's dashpot there,
+        and the ordinary one in the bar. None below zero."""
+        if self.joint_time_constant is None:
+            return np.zeros_like(self.stiffness)
+        viscous = self.joint_time_constant / self.stiffness
+        viscous -= self.ordinary_time_constant / self.regular
+        excess = self.excess_compliance
+        usual = self.joint_time_constant
+        return np.maximum(np.divide(viscous, excess, out=usual.copy(), where=excess != 0), 0.0)
 
     @property
     def damps_alone(self) -> np.ndarray:

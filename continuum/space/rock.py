@@ -8,7 +8,7 @@ rock has sigma_ij = C_ijkl eps_kl. A bar has sigma = E u' along it, and G u' acr
 give forms of its own.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from ufl import dx, grad, inner, sym
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.effective_medium import compliant, stiffness, tensor
+from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.material.rock import (
     ElasticRock,
     elastic_rock,
@@ -28,6 +29,7 @@ from jointwave.cases.partition.joints import within
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
+from jointwave.continuum.joints import layers_of
 from jointwave.continuum.space.compat import cell_constants
 from jointwave.continuum.space.model import Forms
 
@@ -123,14 +125,11 @@ def rock_mass(scene: RockMass, smeared: list[JointSet], model: str) -> list[Mate
     ]
 
 
-def layers_of(scene: Scene) -> dict[int, float]:
-    """Return the thickness (m) of the joints of a pillar that are layers of rock, in order."""
-    found = zip(calibrate(scene).soft.tolist(), scene.soft_layers, strict=True)
-    return dict(sorted((joint, one.thickness) for joint, one in found if one.thickness is not None))
-
-
-def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material]:
-    """Return the rock of a pillar's segments, intact ("jointed") or homogenised, and its layers.
+def pillar(
+    scene: Scene, model: str, components: int, dim: int, less: Mapping[int, float]
+) -> list[Material]:
+    """Return the rock of a pillar's segments, intact ("jointed") or homogenised, of its layers, and
+    of the homogenised blocks that have less of their joints, in halves of an ordinary one.
 
     A layer of thickness h is rock of modulus K_n h that does not widen when it is compressed: held
     by the rock on both sides, a thin layer can not either, and K_n is its whole stiffness. Rock
@@ -152,18 +151,27 @@ def pillar(scene: Scene, model: str, components: int, dim: int) -> list[Material
             C = modulus / (1 - poisson**2) * sheet
         found.append(Material(density, C, eta))
 
+    def add_rock(one: JointedRock, modulus: float, poisson: float) -> None:
+        if relaxes is None:
+            add(one.density, modulus, poisson, one.time_constant or 0.0)
+        else:
+            add(one.density, modulus * relaxes.unrelaxed, poisson, 0.0)
+
     for one, part in zip(p.each, scene.parts, strict=True):
-        modulus, poisson, eta = one.modulus, one.poisson, one.time_constant or 0.0
         if model == "jointed":
             assert one.intact_modulus is not None
-            modulus, poisson = one.intact_modulus, scene.alone(part).rock.intact_poisson
-        if relaxes is not None:
-            modulus, eta = modulus * relaxes.unrelaxed, 0.0
-        add(one.density, modulus, poisson, eta)
+            add_rock(one, one.intact_modulus, scene.alone(part).rock.intact_poisson)
+        else:
+            add_rock(one, one.modulus, one.poisson)
     soft = dict(zip(p.soft.tolist(), scene.soft_layers, strict=True))
     for joint, thickness in layers_of(scene).items():
         normal = soft[joint].own_stiffness(p.spacing)
         assert normal is not None
         etas = p.joint_time_constant
         add(p.density, normal * thickness, 0.0, 0.0 if etas is None else float(etas[joint]))
+    for block, halves in less.items():
+        one = p.each[p.segment[block]]
+        moduli = np.array([one.modulus, one.shear_modulus])
+        E, G = 1 / (1 / moduli - halves * p.half_joint[:, block] / one.spacing)
+        add_rock(one, E, E / G / 2 - 1)
     return found

@@ -37,6 +37,22 @@ def test_loads_have_their_force_and_moment(short, load, cell):
         assert around == pytest.approx(area * moment, abs=1e-12)
 
 
+@pytest.mark.parametrize(("dim", "rock"), [(2, "4.13"), (3, "1.33")])
+def test_linear_elements_that_bend_are_warned_of(short, caplog, dim, rock):
+    """Joints have nodes at their edges, of 3 times their second moment; so has rock in the plane,
+    with 3 (h / a)^2 G / C more in shear. In space it has 1 + G / C. G / C is 3 / 8 and 1 / 3. A
+    pillar sags less than half as far. Order 2 says nothing."""
+    weight = {"acceleration": 0.1, "direction": [1, 0, 0], "static": True}
+    sag = []
+    for order in (2, 1):
+        caplog.clear()
+        scene = short(**STILL, gravity=weight, ends__end="fixed", numerics={"order": order})
+        sag.append(float(np.abs(simulate(scene, dim=dim).displacement[..., 0]).max()))
+        found = [line for line in caplog.messages if "times as stiff" in line]
+        assert [f"joints 3 and rock {rock} times" in line for line in found] == [True] * (order < 2)
+    assert sag[1] < sag[0] / 2
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_the_start_carries_the_load(short, dim):
     """Of each step its mean, along the pillar and across it: sections have no own error."""

@@ -33,11 +33,11 @@ def bar(pillar):
     return lambda **changes: pillar(**{**BAR, **changes})
 
 
-def soft_joint(y, kappa, impedance=DENSITY * SPEED):
+def soft_joint(y, kappa, impedance=DENSITY * SPEED, block=1.0):
     """Return the soft layer at y (m) whose joint has kappa = K/(Z omega) at the peak frequency; the
     homogenised bar holds the compliance of an ordinary joint already."""
     excess = 1 / (kappa * impedance * 2 * np.pi / PERIOD)
-    return {"y": y, "normal_stiffness": 1 / (excess + 1.0 / MODULUS)}
+    return {"y": y, "normal_stiffness": 1 / (excess + block / MODULUS)}
 
 
 def amplitude(times, wave):
@@ -90,7 +90,25 @@ def test_a_layer_that_is_meshed_has_its_mass_and_the_interface_has_none(bar):
     meshed, interface = thin_layer.transmission(ratio, phase), one_joint.coefficients(1, kappa, 1)
     for one, exact, passes in (
         (layer | {"thickness": thickness}, meshed, 0.5643),
-        (soft_joint(20.0, kappa), abs(interface[0]), 0.5547),
+        (soft_joint(20.0, kappa, block=0.0), abs(interface[0]), 0.5547),
     ):
         assert exact == pytest.approx(passes, abs=5e-5)
-        assert pytest.approx(exact, rel=1e-3) == shares(bar(soft_layers=[one]))[1]
+        scene = bar(soft_layers=[one], rock__intact_modulus=(1 + 1e-9) * MODULUS)
+        assert pytest.approx(exact, rel=1e-3) == shares(scene)[1]
+
+
+@pytest.mark.parametrize(
+    ("law", "kappa"),
+    [
+        ({"thickness": 1e-3}, 0.5),
+        ({"maximum_closure": 1e3}, 0.5),
+        ({"tensile_strength": 1e9, "fracture_energy": 1e16}, None),
+    ],
+)
+def test_a_layer_replaces_a_joint_of_the_homogenised_bar(bar, law, kappa):
+    """Whatever its law, here far from its limits: |T| and |R| of its excess compliance, or of none.
+    The blocks beside it have less instead, within (k S)^2 / 4."""
+    layer = {"y": 20.0} if kappa is None else soft_joint(20.0, kappa, block=0.5)
+    found = shares(bar(soft_layers=[layer | law], pillar__block=0.5))
+    R, T = np.abs(one_joint.coefficients(1.0, kappa, 1.0)) if kappa else (0.0, 1.0)
+    assert pytest.approx((R, T), abs=(np.pi / 10 * 0.5) ** 2 / 4) == found

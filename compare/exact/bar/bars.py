@@ -55,11 +55,12 @@ def bar_of(scene: Scene, resolved: bool) -> Bar:
     matched; if these are not resolved, its homogenised bar with soft layers as interfaces."""
     p = calibrate(scene)
     model, moduli = "equivalent", [one.modulus for one in p.each]
-    compliance, etas = p.excess_compliance, p.joint_time_constant
+    compliance, etas = p.excess_compliance, p.excess_time_constant
     if resolved:
         assert p.own_stiffness is not None
         model, moduli = "jointed", [one.intact_modulus or 0.0 for one in p.each]
-        compliance, etas = 1 / p.own_stiffness, p.own_time_constant
+        compliance, own = 1 / p.own_stiffness, p.own_time_constant
+        etas = np.zeros_like(p.joint_y) if own is None else own
     start, end = (
         end_of(kind, rock.impedance, 0.5 / rock.regular_own_stiffness, rock.time_constant or 0.0)
         if resolved  # half a joint is before it
@@ -71,7 +72,7 @@ def bar_of(scene: Scene, resolved: bool) -> Bar:
         rocks=rocks(p, moduli, mechanisms_of(scene, model)),
         joint_y=p.joint_y,
         joint_compliance=compliance,
-        joint_time_constant=np.zeros_like(p.joint_y) if etas is None else etas,
+        joint_time_constant=etas,
         start=start,
         end=end,
     )

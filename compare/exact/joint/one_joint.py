@@ -120,8 +120,7 @@ def the_joint(p: Properties) -> Joint:
     """Return the only joint whose stiffness differs from the ordinary ones."""
     compliance = p.excess_compliance
     j = int(np.flatnonzero(compliance)[0])
-    eta = 0.0 if p.joint_time_constant is None else float(p.joint_time_constant[j])
-    return Joint(float(p.joint_y[j]), 1 / compliance[j], eta)
+    return Joint(float(p.joint_y[j]), 1 / compliance[j], float(p.excess_time_constant[j]))
 
 
 def transmitted(
