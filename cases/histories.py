@@ -268,6 +268,34 @@ class Integrated(LoadHistory):
         return self.history.breaks
 
 
+@dataclass(frozen=True)
+class Late(LoadHistory):
+    """A history that begins later, by a time in s."""
+
+    history: LoadHistory
+    by: float
+
+    def value(self, t):
+        return self.history.value(np.subtract(t, self.by))
+
+    def impulse(self, t):
+        return self.history.impulse(np.subtract(t, self.by))
+
+    def double_impulse(self, t):
+        return self.history.double_impulse(np.subtract(t, self.by))
+
+    def rate(self, t):
+        return self.history.rate(np.subtract(t, self.by))
+
+    @property
+    def end(self):
+        return self.history.end + self.by
+
+    @property
+    def breaks(self):
+        return [one + self.by for one in self.history.breaks]
+
+
 def triangle(amplitude: float, rise: float, decay: float) -> Recorded:
     """Return a triangular pulse: straight up to its peak in the time `rise` (s; 0: at once), and
     straight down in `decay` (s), as blasts are idealised."""

@@ -11,7 +11,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.cases.histories import Integrated, LoadHistory, Recorded, Step, periodic, triangle
+from jointwave.cases.histories import (
+    Integrated,
+    Late,
+    LoadHistory,
+    Recorded,
+    Step,
+    periodic,
+    triangle,
+)
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import Interpolation
 from jointwave.cases.scene_type import AnyScene
@@ -37,6 +45,17 @@ def load_history(scene: Scene) -> LoadHistory:
         return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
     p = calibrate(scene).at_start.at_rest
     return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
+
+
+def block_load(scene: Scene) -> LoadHistory:
+    """Return the load as the first rigid block bears it: late by what a wave from a start that
+    absorbs takes through the intact rock before its middle; half of that by a quiet start."""
+    load, p = load_history(scene), calibrate(scene).at_start.at_rest
+    part = {"matched": 0.5, "quiet": 0.25}.get(scene.ends.start, 0.0)
+    impedance, modulus = p.impedance, p.intact_modulus
+    if scene.load.is_across:
+        impedance, modulus = p.shear_impedance, p.intact_shear_modulus
+    return Late(load, part * p.spacing * impedance / modulus) if part and modulus else load
 
 
 def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:
@@ -87,7 +106,7 @@ def with_load_itself(
     faced = np.flatnonzero((sections.left == 0) & (sections.weight < 1.0))
     if not faced.size or scene.shakes_base or scene.load.arm is not None:
         return stress
-    load, found = load_history(scene), stress.copy()
+    load, found = block_load(scene), stress.copy()
     mean = (load.impulse(times + dt / 2) - load.impulse(times - dt / 2)) / dt
     axes = scene.load.direction[1] if stress.ndim == 2 else np.array(scene.load.direction)
     beside = np.multiply.outer(axes, load.value(times) - mean)

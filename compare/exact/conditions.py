@@ -2,7 +2,7 @@
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import LoadHistory
-from jointwave.cases.loads import load_history, velocity_of
+from jointwave.cases.loads import block_load, velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
@@ -63,4 +63,4 @@ def drive(scene: Scene) -> LoadHistory:
     load = scene.load
     if scene.shakes_base:
         return velocity_of(load, load.amplitude)
-    return load_history(scene)
+    return block_load(scene)
