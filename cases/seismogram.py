@@ -1,6 +1,7 @@
 """Seismograms, SAC, miniSEED, SEG-2 and SEG-Y, read by ObsPy."""
 
 import io
+from collections.abc import Callable
 from importlib.metadata import entry_points
 from typing import Any
 from warnings import catch_warnings, simplefilter
@@ -9,6 +10,12 @@ import numpy as np
 
 #: By ObsPy's names. Its own search for a format would also unpickle a file.
 FORMATS = ("SAC", "MSEED", "SEG2", "SEGY")
+#: When a trace begins on its own clock, s, where its format has one.
+BEGIN: dict[str, Callable[[Any], float]] = {
+    "SAC": lambda stats: stats.sac.get("b") or 0.0,
+    "SEG2": lambda stats: float(stats.seg2.get("DELAY", 0)),
+    "SEGY": lambda stats: 1e-3 * stats.segy.trace_header.delay_recording_time,
+}
 SAC_ERROR = 0.01  # of the interval that B, E and NPTS of a SAC file give
 
 
@@ -39,7 +46,7 @@ def read_traces(content: bytes, form: str) -> tuple[np.ndarray, dict[str, np.nda
     except Exception:  # of a dozen kinds, for a damaged file
         raise ValueError(f"cannot be read as {form}") from None
     named = {one.stats.channel or str(i): one for i, one in enumerate(traces, 1)}
-    every = [(one.stats, _begin(one.stats, form)) for one in traces]
+    every = [(one.stats, BEGIN.get(form, lambda stats: 0.0)(one.stats)) for one in traces]
     shared = {(stats.delta, stats.npts, stats.starttime.ns, begin) for stats, begin in every}
     if len(shared) != 1 or len(named) < len(traces):
         allowed = "must hold each channel in one trace without gaps, all over the same times"
@@ -50,18 +57,6 @@ def read_traces(content: bytes, form: str) -> tuple[np.ndarray, dict[str, np.nda
         raise ValueError(f"must have a positive sampling interval, not {step:g} s")
     values = {name: np.asarray(one.data, dtype=float) for name, one in named.items()}
     return begin + step * np.arange(stats.npts), values
-
-
-def _begin(stats: Any, form: str) -> float:
-    """Return when a trace begins on its own clock, s."""
-    match form:
-        case "SAC":
-            return stats.sac.get("b") or 0.0
-        case "SEG2":
-            return float(stats.seg2.get("DELAY", 0))
-        case "SEGY":
-            return 1e-3 * stats.segy.trace_header.delay_recording_time
-    return 0.0
 
 
 def _sac_step(header: Any, stats: Any) -> float:

@@ -97,11 +97,10 @@ def side_error(scene: RockMass) -> SideError | None:
     part, cause = max(_causes(scene), default=(0.0, ""))
     if part < LEAST:
         return None
-    speed = fastest(scene)
     corners = np.concatenate([corners for corners, _ in faces])
     begins = min(plane_wave(scene, one).lateness(corners).min() for one in scene.waves)
-    reach = speed * (scene.time.duration - max(float(begins), 0.0))
-    wavelength = speed * max(one.time_scale or scene.time.duration for one in scene.waves)
+    reach = fastest(scene) * (scene.time.duration - max(float(begins), 0.0))
+    wavelength = fastest(scene) * max(one.time_scale or scene.time.duration for one in scene.waves)
     away = {
         key: [(tuple(place), distance(np.array(place), faces)) for place in places]
         for key in ("points", "joints")
