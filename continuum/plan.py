@@ -19,7 +19,7 @@ from jointwave.continuum.mesh.size import of_coarse_cells, resolved_period
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import SceneBody, body_of
 from jointwave.continuum.space import compat
-from jointwave.continuum.space.model import Body, JumpOperator
+from jointwave.continuum.space.model import Body
 from jointwave.continuum.space.rock import Rock
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.scaling import scaled_mass
@@ -107,7 +107,7 @@ def of_stiff_elements(found: SceneBody) -> Iterator[str]:
         turns = len(scene.joint_sets) > 1 or not scene.boundaries.sides("periodic")
     if scene.numerics.continuum.order > 1 or body.x.shape[1] == 1 or not turns:
         return
-    ratios = {} if body.joints is None else {"joints": _of_joints(found, body.joints)}
+    ratios = {"joints": _of_joints(found)} if len(body.joints.column) else {}
     if scene.is_column:
         ratios["rock"] = _of_bending(body, scene.pillar.side)
     if max(ratios.values(), default=0.0) > STIFFER:
@@ -118,14 +118,14 @@ def of_stiff_elements(found: SceneBody) -> Iterator[str]:
         )
 
 
-def _of_joints(found: SceneBody, joints: JumpOperator) -> float:
+def _of_joints(found: SceneBody) -> float:
     """Return the second moments that joints have at their points, over those of their faces."""
-    faces = found.blocks.contacts
+    faces, joints = found.blocks.contacts, found.body.joints
     exact = np.trace(faces.second_moment, axis1=1, axis2=2)
     inner = joints.column < len(exact)  # not across periodic sides
     column, weight = joints.column[inner], joints.weight[inner]
     away = ((joints.place[inner] - faces.centroid[column]) ** 2).sum(axis=1)
-    return float(weight @ away / exact[np.unique(column)].sum())
+    return float(weight @ away / exact[np.unique(column)].sum()) if len(column) else 0.0
 
 
 def _of_bending(body: Body, side: float) -> float:

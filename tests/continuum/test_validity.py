@@ -28,11 +28,11 @@ def test_homogenised_rock_is_whole_but_for_soft_layers(pillar):
 
 
 def test_homogenised_rock_keeps_a_joint_that_can_fail_as_stiff_as_ten(pillar):
-    """A joint as stiff as the others is in the homogenised rock already."""
+    """A tenth of an ordinary joint's own compliance, which the blocks beside it lose."""
     scene = pillar(**layer(cohesion=1e5), **OBLIQUE)
     p, law = calibrate(scene), plan_of(scene, "equivalent", dim=2).problem.law
-    assert law.normal_stiffness == pytest.approx(10 * p.regular_stiffness, rel=1e-12)
-    assert law.shear_stiffness == pytest.approx(10 * p.regular_shear_stiffness, rel=1e-12)
+    assert law.normal_stiffness == pytest.approx(10 * p.regular_own_stiffness, rel=1e-12)
+    assert law.shear_stiffness == pytest.approx(10 * p.regular_own_shear_stiffness, rel=1e-12)
 
 
 BREAKS = {"joints": {"tensile_strength": 5e6, "fracture_energy": 2000.0}}
