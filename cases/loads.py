@@ -49,11 +49,12 @@ def load_history(scene: Scene) -> LoadHistory:
 
 def block_load(scene: Scene) -> LoadHistory:
     """Return the load as the first rigid block bears it: late by what a wave from a start that
-    absorbs takes through the intact rock before its middle; half of that by a quiet start."""
+    absorbs takes through the intact rock before its middle; half of that by a quiet start. An
+    oblique load is late as its part along the axis."""
     load, p = load_history(scene), calibrate(scene).at_start.at_rest
     part = {"matched": 0.5, "quiet": 0.25}.get(scene.ends.start, 0.0)
     impedance, modulus = p.impedance, p.intact_modulus
-    if scene.load.is_across:
+    if not scene.load.direction[1]:
         impedance, modulus = p.shear_impedance, p.intact_shear_modulus
     return Late(load, part * p.spacing * impedance / modulus) if part and modulus else load
 

@@ -21,7 +21,7 @@ from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.model import Body, directions
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
-from jointwave.joints.law import Law, law, stiffest
+from jointwave.joints.law import Law, law, stiffest, uniform
 
 
 def with_law(found: SceneBody) -> tuple[Body, Law | None]:
@@ -48,7 +48,9 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
         strengths, less = strength_of(sets, which).strengths(), np.zeros(len(which))
     etas, shear = (None if one is None else one[which] for one in (etas, shear))
     own = law(normal[which], etas, tension[which], shear_stiffness=shear, **strengths)
-    return body, own if own.maximum_closure is None else own._replace(rock_compliance=-less)
+    if own.maximum_closure is not None:
+        own = own._replace(rock_compliance=uniform(0.0 - less))
+    return body, own
 
 
 def problem_of(scene: AnyScene, found: SceneBody) -> Problem:

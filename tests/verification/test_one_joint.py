@@ -17,13 +17,17 @@ from jointwave.compare.scenes import SHIPPED
 
 SPEED, Z, WAVELET = 2000.0, 2400.0 * 2000.0, 0.01
 SIDES = 20.0 - 1e-6, 20.0 + 1e-6  # m, of the joint
+#: A layer that differs in strength alone takes a tenth of a joint out of the homogenised blocks of
+#: d = 1 m beside it. A free face strains its block by rho d^2 v' / 2 E: one that lacks a twentieth
+#: moves by a twentieth of that less, whose rate is at most 3 (pi d / c T)^2 / 20 of v, of a Ricker.
+BESIDE = 3 * (np.pi / (SPEED * WAVELET)) ** 2 / 20
 CLOSES = 1.5 * WAVELET + 20.0 / SPEED  # at the middle of the wavelet, whose impulse is zero there
 
 
 def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
     """While open: no traction at all, and v_T but for the 1e-8 of the wavelet that arrives before
-    it pulls; v_R = v_I and a gap rate of -2 v_I within 0.1 %, 80 quadratic elements and more than
-    1000 steps a wavelength.
+    it pulls; v_R = v_I and a gap rate of -2 v_I within `BESIDE` and 0.1 %, 80 quadratic elements
+    and more than 1000 steps a wavelength.
 
     It closes at the middle of the wavelet, to a sample. The stiffness of ten ordinary joints is
     pressed in by p / K and, as by any mass that lands on a spring, at most twice that; what is
@@ -49,11 +53,11 @@ def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
     incident = load.value(times - 20.0 / SPEED) / (2 * Z)
     assert np.abs(velocity[1][open_]).max() < 1e-8 * np.abs(incident).max()
     rate = (velocity[1] - velocity[0])[open_]
-    assert np.abs(rate + 2 * incident[open_]).max() < 1e-3 * 2 * np.abs(incident).max()
+    assert np.abs(rate + 2 * incident[open_]).max() < (1e-3 + BESIDE) * 2 * np.abs(incident).max()
     until = times < CLOSES + 10.0 / SPEED - 5e-4  # elements send ripples ahead of the jump
     reflected = stress[0] - load.value(times - 10.0 / SPEED) / 2
     expected = -load.value(times - 30.0 / SPEED) / 2
-    assert np.abs(reflected - expected)[until].max() < 1e-3 * np.abs(expected).max()
+    assert np.abs(reflected - expected)[until].max() < (1e-3 + BESIDE) * np.abs(expected).max()
 
     closes = times[np.argmax((gap <= 0) & (times > CLOSES - 2e-3))]
     assert closes == pytest.approx(CLOSES, abs=1.5e-5)

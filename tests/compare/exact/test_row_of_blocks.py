@@ -93,20 +93,21 @@ class Points:
     def solved(self):
         """Return motions and velocities of the blocks [n, 24] at the scene's samples, by DOP853 of
         the slopes, which are linear in the state and the load."""
-        times, rows, x = sample_times(self.scene), [np.zeros(60)], np.zeros(60)
+        times, rows, x = sample_times(self.scene), [], np.zeros(60)
         A = np.array([self.slope(-1.0, e) for e in np.eye(60)]).T
         b = self.slope(5e-4, np.zeros(60)) / self.load.value(5e-4)
         breaks = [t for t in self.load.breaks if 0 < t < times[-1]]
         for start, stop in pairwise([0.0, *breaks, times[-1]]):
-            within = times[(times > start) & (times <= stop)]
+            within = np.append(times[(times >= start) & (times < stop)], stop)
             tight = {"rtol": 1e-11, "atol": 1e-14}
 
             def slope(t, x):
                 return A @ x + b * self.load.value(t)
 
-            part = solve_ivp(slope, (start, stop), x, "DOP853", within, **tight).y.T
-            rows, x = [*rows, *part], part[-1]
-        return np.array(rows)[:, :24], np.array(rows)[:, 36:]
+            *part, x = solve_ivp(slope, (start, stop), x, "DOP853", within, **tight).y.T
+            rows += part
+        found = np.array([*rows, x])
+        return found[:, :24], found[:, 36:]
 
 
 CASES = {

@@ -195,7 +195,7 @@ def test_the_least_of_runs_in_turns_counts_and_is_known(monkeypatch):
     scenes = [cases.load_variant(find(SCENE), "", {"pillar.length": x}) for x in (50.0, 25.0)]
     found = [x for cost in step_costs(scenes) for x in cost]
     assert found == pytest.approx([2.0, 4.0, 30.0, 60.0])
-    assert turns == [100, 50] * 11
+    assert turns == [100, 50] * (1 + step_cost.REPEATS)
 
 
 def test_every_effect_is_measured_once_in_as_many_blocks(monkeypatch):

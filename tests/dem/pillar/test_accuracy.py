@@ -146,6 +146,7 @@ def struck(pillar, tmp_path):
             motion__rotation="none",
             load={**load, "direction": direction},
             ends__start=start,
+            rock__intact_modulus=None,  # else the load begins late, and bends within steps
             record__stress=[0.0, 0.2],
             numerics__dem__step_fraction=fraction,
         )
