@@ -26,7 +26,7 @@ def incident(scene: AnyScene) -> IncidentField | None:
 
 def side_warnings(scene: AnyScene) -> list[str]:
     """Return the errors of the quiet sides of a rock mass that its receivers feel, a line each."""
-    if scene.is_column:
+    if scene.is_column or not scene.boundaries.sides("quiet"):
         return []
     from jointwave.compare.exact.rock_mass.side_error import beside_loads, side_error
 
