@@ -63,10 +63,22 @@ def _properties(scene: Scene) -> Properties:
         soft=soft,
         weld=weld,
         tension=np.array([one.tension is not False for one in laws])[law],
+        end_stress=_at_ends(scene, rocks[0]),
         **_springs(scene, rocks, segment, np.diff(y), soft),
         **vars(mean_of(rocks)),
         **vars(strength_of(laws, law)),
     )
+
+
+def _at_ends(scene: Scene, rock: JointedRock) -> tuple[float, float]:
+    """Return the stress that closes joints at the start and the end before any load, Pa, with the
+    weight where an end that absorbs waves bears it alone."""
+    gravity, weight = scene.gravity, 0.0
+    if gravity is not None and gravity.static and "fixed" not in dict(scene.ends).values():
+        along = abs(gravity.direction[1])
+        weight = rock.density * gravity.acceleration * along * scene.pillar.length
+    start, end = scene.bears
+    return rock.prestress + start * weight, rock.prestress + end * weight
 
 
 def _springs(

@@ -96,6 +96,7 @@ class Properties(JointedRock, Strength):
     parts : the rock of each segment as if it were alone; none where all blocks are equal, and all
         joints except the soft layers.
     segment : int array [N], which of `each` the blocks belong to.
+    end_stress : what closes the joints at the start and the end at rest, Pa.
     """
 
     contact_y: np.ndarray
@@ -114,6 +115,7 @@ class Properties(JointedRock, Strength):
     rock_between: np.ndarray
     segment: np.ndarray
     parts: tuple[JointedRock, ...]
+    end_stress: tuple[float, float]
 
     @property
     def is_uniform(self) -> bool:
@@ -128,12 +130,12 @@ class Properties(JointedRock, Strength):
     @property
     def at_start(self) -> JointedRock:
         """The rock at the start."""
-        return self.each[0]
+        return self.each[0].but(prestress=self.end_stress[0])
 
     @property
     def at_end(self) -> JointedRock:
         """The rock at the end."""
-        return self.each[-1]
+        return self.each[-1].but(prestress=self.end_stress[1])
 
     @property
     def joint_y(self) -> np.ndarray:

@@ -33,7 +33,7 @@ def met(scene: Scene) -> dict[str, Any]:
     )
     breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
     opens = bends(scene) and (breaks or not p.tension.all())
-    ends, most = zip(scene.ends, (p.at_start, p.at_end), strict=True), sum(stresses(scene))
+    ends, added = zip(scene.ends, (p.at_start, p.at_end), strict=True), stresses(scene)[1]
     return dict(
         crossings=p.bar_speed / scene.pillar.length,
         block=scene.pillar.block if fails else None,
@@ -45,6 +45,7 @@ def met(scene: Scene) -> dict[str, Any]:
         closing=(
             (f"ends.{end}", most, rock.at_rest.impedance, rock.under(most).impedance)
             for (end, kind), rock in ends
+            for most in [rock.prestress + added]
             if kind in ("quiet", "matched") and scene.source is None
         ),
     )
