@@ -45,9 +45,8 @@ class Monitor:
         steps, body = self.steps, self.found.body
         exact = self.scene.record.energy and self.explicit  # the ledger of implicit steps is not
         speed = np.abs(steps.v).reshape(-1, body.components).max(axis=1)
-        places = body.x[:, body.x.shape[1] // 2] if self.scene.is_column else body.x
         energy = steps.samples.energy if exact else None
-        check(self.guard, self.run, (first, last), energy, speed, places)
+        check(self.guard, self.run, (first, last), energy, speed, body.x)
         t = last * self.time.stride * self.time.dt
         refuse_large_motion(self.scene, self.run.engine, self._moved, t, first)
 

@@ -79,7 +79,7 @@ def check(
     first .. last - 1.
 
     energy : the ledger [term, sample], None where it is not exact. speed : largest ones of places
-    [n] after these samples, as the guard's limit. places : [n, d], or [n] of y, m.
+    [n] after these samples, as the guard's limit. places : [n, d], m.
     """
     (first, last), stride, found = samples, run.time.stride, guard.found
     if energy is not None:
@@ -94,10 +94,10 @@ def _stopped(run: Guarded, found: list[int], place: Any) -> StoppedError:
     """Return the error of a run by a guard's finding; place : of the fastest point, m."""
     (step, what, sound), scene, dt = found, run.scene, run.time.dt
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
-    at = f"y = {place:.6g}" if place.ndim == 0 else f"[{', '.join(f'{x:.6g}' for x in place)}]"
+    at = ", ".join(f"{x:.6g}" for x in place)
     error = StoppedError(
         f"{name}: {run.engine} {'gained energy' if what == ENERGY else 'diverged'} at t = "
-        f"{step * dt:.6g} s, step {step} of {dt:.4g} s, fastest at {at} m: {_cause(run)}"
+        f"{step * dt:.6g} s, step {step} of {dt:.4g} s, fastest at [{at}] m: {_cause(run)}"
     )
     error.samples = max(0, sound) // run.time.stride + 1
     return error

@@ -110,7 +110,7 @@ def dataset(
         coords["term"] = ("term",), np.array(terms)
     about = attributes_of(scene, engine, attributes)
     result = xr.Dataset(labelled(variables), labelled(coords), about)
-    if energy is not None and not (scene.is_column or scene.in_space):
+    if energy is not None and scene.in_plane:
         result["energy"].attrs["units"] = "J/m"  # of thickness
     return result
 

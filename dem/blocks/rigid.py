@@ -135,7 +135,7 @@ def masses_of(cut: Cut, density: np.ndarray, rotations: int) -> np.ndarray:
 
 def steady_fields(scene: AnyScene, dim: int) -> tuple[np.ndarray, np.ndarray | None]:
     """Return the gravity [d], m/s2, and the prestress [d, d], Pa, of a scene; None without."""
-    axes = np.array([1]) if scene.is_column and dim == 1 else np.arange(dim)
+    axes = np.array([1]) if dim == 1 else np.arange(dim)
     gravity, stress = np.zeros(dim), None
     if scene.gravity is not None:
         gravity = scene.gravity.acceleration * np.array(scene.gravity.direction)[axes]
