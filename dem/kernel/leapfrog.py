@@ -1,7 +1,4 @@
-"""Leapfrog steps of rigid blocks: from a model to the arguments of the kernel.
-
-Threads have parts of the tiles, as `dem.kernel.parts` has them.
-"""
+"""Leapfrog steps of rigid blocks: build the arguments of the kernel and call it, one part a thread."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -17,9 +14,12 @@ from jointwave.dem.sides.shaking import motion_of_walls
 
 
 class ChunkTable(NamedTuple):
-    """Contacts as the kernel takes them: as in `chunks.Chunks`, the table of the laws, the
-    first chunk, block, held block, recorded block and watched contact of each tile [5, tiles + 1],
-    places and rows of watched contacts [2, w], and how many contacts there are."""
+    """Contacts as arguments of the kernel.
+
+    pair, table, row_from : as in `chunks.Chunks`. laws : table of the joint laws. tiles : first
+    chunk, block, held block, recorded block and watched contact of each tile [5, tiles + 1].
+    seen : places and sample rows of watched contacts [2, w]. contacts : their number.
+    """
 
     pair: np.ndarray
     table: np.ndarray
@@ -31,10 +31,12 @@ class ChunkTable(NamedTuple):
 
 
 class BlockTable(NamedTuple):
-    """Blocks as the kernel takes them: `model.Blocks`, with one over the inertia of each freedom,
-    the mass that gravity pulls of each block, numbers, matrices and springs of held blocks, places
-    and rows of recorded ones [2, r], `back`, the inverse of the tensor, and `free`, as
-    `rotation.free_motion` has it."""
+    """Blocks as arguments of the kernel: the fields of `model.Blocks` and `model.Held`, and
+
+    inverse : one over the inertia of each freedom. mass : gravitational mass of each block, kg.
+    places : places and sample rows of recorded blocks [2, r]. back : inverse of the inertia tensor.
+    free : constants of free rotation, see `rotation.free_motion`.
+    """
 
     inertia: np.ndarray
     inverse: np.ndarray
@@ -63,11 +65,11 @@ def march(
     shake: np.ndarray | None = None,
     threads: int = 1,
 ) -> None:
-    """Take the steps first .. last - 1, with their samples, `stride` steps apart.
+    """Take the steps first .. last - 1 and sample every `stride` steps.
 
-    drive : float array [last - first, h, freedoms], N and N m, forces on held blocks in each step;
-    [(last - first) stages, ...] in each stage of composed steps, at `composition.instants`.
-    shake : float array [last - first, walls, dim], the velocity of walls in each step, m/s.
+    drive : forces on held blocks in each step [last - first, h, freedoms], N and N m; of composed
+    steps in each stage [(last - first) stages, ...], at `composition.instants`.
+    shake : velocity of walls in each step [last - first, walls, dim], m/s.
     """
     take = make_stepper(model, state, samples, steps[1] - steps[0], drive, shake, threads)
     take(stride, *steps)
@@ -82,23 +84,22 @@ def make_stepper(
     shake: np.ndarray | None = None,
     threads: int = 1,
 ) -> Callable[..., None]:
-    """Return a function of (stride, first, last) that does what `march` does, as often as it is
-    called, and at most so many steps at a time.
+    """Return a function of (stride, first, last) that takes at most `most` steps per call.
 
-    drive, shake : of the first of the steps on, as they are then. The function may be given what
-    mass-proportional damping leaves of a velocity in a step, `keep`, in place of the model's.
+    drive, shake : as in `march`, from step `first` on; read at each call, so the caller may refill
+    them. The function also accepts `keep`, the factor of mass-proportional damping per step.
     """
     form, chunks, f = model.form, model.chunks, model.form.freedoms
     own, dt, stages = model.blocks, model.blocks.dt, form.stages
     held, matrices, springs = model.held or (None, None, None)
     if held is None:
-        drive = None  # one kernel, whoever asks
+        drive = None  # the same kernel for all callers
     elif drive is None:
         drive = np.zeros((stages * most, len(held), f))
     walls = None if shake is None else motion_of_walls(state, shake, dt)
     ends, depth = divided(chunks, state.history, f, threads)
     bands = max(1, -(-stages * most // depth))
-    depth = max(1, -(-stages * most // bands))  # alike in all
+    depth = max(1, -(-stages * most // bands))  # bands of equal depth
     loop, inertia = loop_for(form), model.inertia.ravel()
     mass = np.ascontiguousarray(own.inertia[:, 0] if own.mass is None else own.mass)
     first_place, places = marks(model.places, chunks.first_block)
@@ -134,7 +135,7 @@ def make_stepper(
             table = between._replace(tiles=part.tiles)
             loop(table, damped, flat(part.state), part.samples, drive, walls, part.work, span)
 
-        if not parts or first == last:  # nothing to take: compiles
+        if not parts or first == last:  # without a step: compiles only
             advance(whole, *steps[:2])
         else:
             take_together(whole, parts, model.walls, steps, advance)

@@ -6,41 +6,41 @@ tangents, the jump at a point of the face, e from its centre, is that of both bl
 
     jump = E (u_j + theta_j x r_j - u_i - theta_i x r_i) + (E (theta_j - theta_i)) x e,
 
-gap first, then slip. At each point the law gives a traction; with the area w that a point stands
-for, the force on block j and its moment about the centre of the face are the sums of w t and of
-e x w t. Joints that always hold need no points: area and second moments of the face do.
+gap first, then slip. At each point the law gives a traction t. With the point's area w, the force
+on block j and its moment about the centre of the face are the sums of w t and of e x w t. Joints
+that always hold need no points, only the area and second moments of the face.
 
-Displacements live at whole steps, velocities half a step before; dashpots of joints see rates that
-are extrapolated to the whole step, those beyond the domain the mean of both half steps. The ledger
-is exact at a step of any length: the work of a force from one whole step to the next is the mean of
-its two values times the displacement increment, the kinetic energy v[n-1/2] M v[n+1/2] / 2. So a
-force works over the half step before it and over the one after it, which are accounted for apart.
-A step that is composed of stages (`composition`) takes each as a leapfrog step with a length of
-its own for velocities, zero in the first, and for displacements.
+Displacements live at whole steps, velocities half a step before. Dashpots of joints use rates
+extrapolated to the whole step, boundary dashpots the mean of both half steps. The ledger is exact
+for any time step: the work of a force between two whole steps is the mean of its two values times
+the displacement increment, the kinetic energy is v[n-1/2] M v[n+1/2] / 2. So a force works over the
+half step before it and the one after it, and the ledger adds the two separately. Each stage of a
+composed step (`composition`) is a leapfrog step with separate lengths for velocities (zero in the
+first stage) and displacements.
 
-With rotations of any size (`finite`, in space) R_i and R_j turn the blocks from where they were at
-the start. The points belong to block i. The jump at one is how far the point of block j that was
-there at the start is from it, in axes that turn with j; x the centroids,
+With rotations of any size (`finite`, in space) R_i and R_j are the rotations of the blocks since
+the start, x their centroids. The points belong to block i. The jump at a point is the distance to
+the point of block j that coincided with it at the start, in axes that turn with j:
 
     jump = E (R_j^T (x_j - x_i) + r_j - A r_i) + E (1 - A) E^T e,   A = R_j^T R_i,
 
-all by differences from no rotation, which keep the digits of small ones. The force R_j E^T w t acts
-on both blocks at the point itself: it is the gradient of the joint's energy, and conserves momentum
-and angular momentum. About the centre of the face on j it has, in the frame, the moment
+computed from R - 1, which keeps the digits of small rotations. The force R_j E^T w t acts on both
+blocks at the point itself: it is the gradient of the joint's energy, and conserves momentum and
+angular momentum. Its moment on j about the centre of the face is, in the frame,
 
-    sum over tangents k of (E A k) x (sum of e_k w t), less jump x force, both of the centre.
+    sum over tangents k of (E A k) x (sum of e_k w t), less jump x force, both at the centre.
 
-A point that is off the other face, or behind that block, carries nothing. Rates are differences of
-the jump over the step. Blocks have angular momenta at half steps, in the axes of space, and unit
-quaternions at whole steps (`rotation`); the ledger takes the angular velocities that momenta
-give in the orientation of the step, and closes to second order.
+A point beyond the edge of the other face, or behind block j, carries nothing. Rates are differences
+of the jump over the step. Blocks have angular momenta at half steps, in the axes of space, and unit
+quaternions at whole steps (`rotation`). The ledger uses the angular velocities of these momenta at
+the orientation of the step, and closes to second order.
 
-Contacts are worked on side by side, in lanes; their forces are added to the blocks one after the
-other, always in the same order.
+Contacts are vectorised in lanes; their forces are added to the blocks one by one, always in the
+same order.
 
-A tile needs the forces of the contacts of the tile before it at the same step, and the blocks of
-the next one at the step before. So the tiles t, t - 1, t - 2, ... take the steps n, n + 1, n + 2,
-... while they are in the cache.
+A tile needs the contact forces of the tile before it at the same step, and the blocks of the next
+tile at the step before. So the tiles t, t - 1, t - 2, ... take the steps n, n + 1, n + 2, ... while
+they are in the cache.
 """
 
 from collections.abc import Callable
@@ -72,7 +72,7 @@ from jointwave.numerics.jit import jitted
 
 
 def widths_of(form: KernelFlags) -> tuple[int, ...]:
-    """Return how many lanes of each term of the ledger there are, 0 of terms that are absent."""
+    """Return the number of lanes of each term of the ledger, 0 for absent terms."""
     parts, held, lanes = form.parts, int(form.held), L
     damped = form.mass_damping or form.local_damping
     return (
@@ -83,22 +83,22 @@ def widths_of(form: KernelFlags) -> tuple[int, ...]:
 
 
 def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
-    """Return the formulas of rates with finite rotations, of the rates that dashpots see, and of
-    what these took."""
+    """Return the kernels for jump rates under finite rotation, dashpot rates and dissipation."""
     motions, drags, past, rows = form.motions, form.drags, form.history, form.buffer
     LAST_RATE, LAST_DRAG, LAST_JUMP = past.rate, past.drag, past.jump
     JUMP, RATE, NOW, DRAG = rows.jump, rows.rate, rows.now, rows.drag
 
     @formula
     def differ(h, q, dt):
-        """Put the rates half a step before of motion that is no linear function of the blocks'."""
+        """Set the jump rates half a step before as differences of the jump (finite rotations)."""
         for c in range(motions * L):
             jump = q[JUMP + c]
             q[RATE + c], h[LAST_JUMP + c] = (jump - h[LAST_JUMP + c]) / dt, jump
 
     @formula
     def extrapolate(h, q, ledger, dt):
-        """Put the rates that dashpots see; enter what theirs of the last step took since."""
+        """Extrapolate the rates to the step; add to the ledger the dissipation by the dashpot
+        forces of the last step over the half step after it."""
         for a in range(motions):
             for c in range(a * L, a * L + L):
                 rate, before = q[RATE + c], h[LAST_RATE + c]
@@ -108,7 +108,7 @@ def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
 
     @formula
     def account_drags(h, q, ledger, dt):
-        """Enter what dashpots took in the half step before."""
+        """Add the dashpots' dissipation over the half step before to the ledger."""
         for a in range(motions):
             for c in range(a * L, a * L + L):
                 ledger[VISCOUS + c - a * L] -= 0.5 * dt * (q[DRAG + c] * q[RATE + c])
@@ -118,7 +118,7 @@ def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
 
 
 def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
-    """Return the formulas that sample watched contacts, and recorded blocks."""
+    """Return the kernels that sample watched contacts and recorded blocks."""
     dim, freedoms, recorded, finite = form.dim, form.freedoms, form.recorded, form.finite
     FORCE, JUMP, ON_J = form.buffer.force, form.buffer.jump, form.buffer.on_j
     FRAME = form.table.frame
@@ -139,8 +139,8 @@ def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
 
     @formula
     def record_blocks(chunks, blocks, state, samples, t, s, share):
-        """Add a share of the velocities of recorded blocks to their samples, and displacements at
-        the first."""
+        """Sample recorded blocks: half of each velocity, before (share 0, with the displacements)
+        and after the motion (share 1)."""
         for r in range(chunks.tiles[PLACE, t], chunks.tiles[PLACE, t + 1]):
             i, row = freedoms * blocks.places[0, r], blocks.places[1, r]
             for a in range(freedoms):
@@ -158,7 +158,7 @@ def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
 def loop_for(form: KernelFlags) -> Callable:
     """Return the time loop of blocks with these effects; absent ones are not compiled.
 
-    It is one function: numba optimises a formula alone, and again in each that calls it.
+    One function: numba would optimise a called function alone and again in each caller.
     """
     dim, freedoms, finite, has_ledger = form.dim, form.freedoms, form.finite, form.ledger
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
@@ -175,14 +175,13 @@ def loop_for(form: KernelFlags) -> Callable:
     def loop(chunks, blocks, state, samples, drive, walls, work, span):
         """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
 
-        Diagonal k of a band has tile k - j at its step j. Of tiles beyond the first and the last,
-        those take a step on which later ones of the band depend; the band leaves these and their
-        neighbours with motion that is not theirs.
+        Diagonal k of a band takes step j of tile k - j. Tiles outside first .. last - 1 also take
+        the steps on which later steps of the band depend; the motion left in them and in their
+        neighbours is incomplete.
 
         chunks, blocks, state, samples : `leapfrog.ChunkTable`, `leapfrog.BlockTable`, `State`,
-        `Samples`. drive, walls : forces on held blocks in each step or stage, and motion of walls,
-        from `origin` on. work : `parts.Work`. span : first, last, origin, begin, end, stride,
-        depth.
+        `Samples`. drive : forces on held blocks in each step or stage from `origin` on. walls :
+        motion of walls, likewise. work : `parts.Work`.
         """
         setting = flush_denormals()
         chunks, blocks, state = borrowed(chunks), borrowed(blocks), borrowed(state)
@@ -236,7 +235,7 @@ def loop_for(form: KernelFlags) -> Callable:
                             onto_blocks(contacts, q, at, row_from, lanes, force.size, force)
                             if drags:
                                 account_drags(h, q, ledger, dt)
-                            if shaken and has_ledger:  # what moves walls works against joints
+                            if shaken and has_ledger:  # moving walls work against joints
                                 for c in range(lanes):
                                     w = at[L + c] - still
                                     if w > 0:
@@ -262,7 +261,7 @@ def loop_for(form: KernelFlags) -> Callable:
                         row, before, after = term * L, 0.0, 0.0
                         sampled, summed = j % stride == 0, row in SUMMED
                         for i in range(row, row + (widths[term] if sampled or summed else 0)):
-                            before, after = before + one[i], after + one[AFTER + i]  # in order
+                            before, after = before + one[i], after + one[AFTER + i]  # fixed order
                             one[i], one[AFTER + i] = 0.0, 0.0
                         if sampled:
                             samples.energy[term, j // stride] = state.sums[term] + before

@@ -1,7 +1,7 @@
 """The constants and the state of rigid blocks in one, two or three dimensions.
 
-A block has `dim` displacements and, if it turns, one rotation in the plane and three in space: its
-freedoms. Masses and forces are per metre of thickness in the plane.
+The freedoms of a block are its `dim` displacements and, if it rotates, one rotation in the plane or
+three in space. Masses and forces are per metre of thickness in the plane.
 """
 
 from types import SimpleNamespace
@@ -16,7 +16,7 @@ from jointwave.results.dataset import TERMS
 
 
 def rows(**sizes: int) -> Any:
-    """Return where groups of so many rows begin, in numbers, and their `size`."""
+    """Return the offset of each group of rows in a flat array, and the total `size`."""
     begins = LANES * np.append(0, np.cumsum([*sizes.values()]))
     return SimpleNamespace(**dict(zip((*sizes, "size"), begins.tolist(), strict=True)))
 
@@ -26,13 +26,13 @@ class KernelFlags(NamedTuple):
 
     dim : 1, 2 or 3. turns : whether blocks rotate. parts : of the joint law. points : whether
     contacts have points; joints that always hold need none. mass_damping, local_damping, gravity :
-    of the blocks. held : whether some blocks have dashpots of their own, or forces; matched :
-    dashpots behind springs. ledger : whether energies are kept. stressed : whether contacts start
-    under a traction. shaken : whether walls move. relaxed : whether the same kernel brings the
-    blocks to rest first, for which it can damp their motion, without a place in the ledger.
-    in_row : whether contacts mostly join block after block. oblique : whether rotations of a block
-    have inertia in common. stages : of a step, 1 of leapfrog. finite : whether blocks in space turn
-    by any angle; their contacts then have points.
+    of the blocks. held : whether some blocks have boundary dashpots or external forces. matched :
+    whether such dashpots act through springs. ledger : whether energies are recorded. stressed :
+    whether contacts start under a traction. shaken : whether walls move. relaxed : whether dynamic
+    relaxation uses the same kernel, with mass damping that the ledger leaves out. in_row : whether
+    contacts mostly join consecutive blocks. oblique : whether inertia tensors have products of
+    inertia. stages : of a step, 1 for leapfrog. finite : whether blocks in space rotate by any
+    angle; their contacts then have points.
     """
 
     dim: int
@@ -65,7 +65,7 @@ class KernelFlags(NamedTuple):
 
     @property
     def motions(self) -> int:
-        """Numbers of the motion of one block against another at a contact."""
+        """Components of the relative motion at a contact."""
         return self.dim + (self.spread_rows if self.finite else self.rotations)
 
     @property
@@ -76,7 +76,7 @@ class KernelFlags(NamedTuple):
 
     @property
     def drags(self) -> bool:
-        """Whether the dashpots' share of forces is kept apart."""
+        """Whether the dashpots' share of forces is stored separately."""
         return self.parts.dashpots and self.ledger
 
     @property
@@ -86,20 +86,19 @@ class KernelFlags(NamedTuple):
 
     @property
     def recorded(self) -> int:
-        """Rows of a contact's samples: its force on block j in its frame, first moments of it about
-        the face's centre, gap and slip."""
+        """Rows of a contact's samples, in its frame: force on block j, first moments of the
+        traction about the face's centre, gap and slip."""
         return 2 * self.dim + self.spread_rows
 
     @property
     def table(self) -> Any:
         """Rows of the table of contacts.
 
-        frame : axes n and tangents, the tangent left out in the plane. arm_i, arm_j : from
-        centroids to the centre of the face, m. area : m2. extent : how far block j reaches behind
-        the centre of the face and along its tangents, m, where points may leave it. start : gap and
-        slip that stand for what a contact carries at first, m. second : second moments along the
-        first tangent, along the second, and mixed, m4. Then place in the face, m, and area of each
-        point, `dim` rows.
+        frame : normal and tangents; in the plane the normal only. arm_i, arm_j : from centroids to
+        the centre of the face, m. area : m2. extent : extent of block j behind the centre of the
+        face and along its tangents, m (finite rotations). start : gap and slip that give the
+        initial traction, m. second : second moments along the first tangent, along the second, and
+        mixed, m4. Then place in the face, m, and area, m2, of each point, `dim` rows.
         """
         dim, arms = self.dim, self.dim * self.turns
         return rows(
@@ -116,12 +115,13 @@ class KernelFlags(NamedTuple):
     def buffer(self) -> Any:
         """Rows of a chunk's buffer.
 
-        law : parameters of the law, where joints differ. gathered : of the motion of blocks, with
-        finite rotations the scalar parts of quaternions last. jump, rate, now : relative motion at
-        the step, its rates half a step before and now. force, spread : in the frame, and first
-        moments about the face's centre. drag : the dashpots' force and moment. on_j, on_i : force
-        on block j and moments. spare : of one block. before : velocities of the tile before the
-        step, on its end. Points add to what is from force to on_j.
+        law : parameters of the law, where joints differ. gathered : motion of the blocks, with
+        finite rotations the scalar parts of quaternions last. jump : relative motion at the step.
+        rate, now : its rates half a step before, and at the step. force : in the frame. spread :
+        first moments of the traction about the face's centre. drag : the dashpots' force and
+        moment. on_j, on_i : force on block j and moments on both blocks. spare : scratch for one
+        block. before : after the last row, velocities of the tile before the step. Points sum into
+        the rows from `force` up to `on_j`.
         """
         m = self.motions
         found = rows(
@@ -142,11 +142,11 @@ class KernelFlags(NamedTuple):
 
     @property
     def history(self) -> Any:
-        """Rows of what contacts remember.
+        """Rows of a contact's history.
 
         rate : of relative motion one and a half steps before. drag : the dashpots' force and moment
-        at the last step. jump : relative motion at the last step, with finite rotations. Then what
-        each point has, in `point`.
+        at the last step. jump : relative motion at the last step, with finite rotations. Then the
+        rows of each point, see `point`.
         """
         rates = self.motions * self.parts.dashpots
         return rows(
@@ -155,8 +155,8 @@ class KernelFlags(NamedTuple):
 
     @property
     def point(self) -> Any:
-        """Rows of what a point remembers: what has slid, m, its largest opening, m, steps until it
-        broke, cohesion, Pa, and path, m."""
+        """Rows of a point's history: sliding, m, largest opening, m, steps until it broke,
+        cohesion, Pa, and path, m."""
         p = self.parts
         return rows(
             slid=self.dim - 1,
@@ -170,11 +170,11 @@ class KernelFlags(NamedTuple):
 class Held(NamedTuple):
     """Blocks with boundary dashpots or external forces.
 
-    block : int array [h], ascending. matrices : float array [h, 3, freedoms, freedoms]: what is
-    left of its velocity in a step, the share of the velocity without its dashpots, and all its
-    dashpots, N s/m. springs : float array [h, 3, freedoms, freedoms], of dashpots behind springs:
-    what a step leaves of the closures, what it adds to them over the velocity, s, and the force
-    that these take from the block, N/m; None where there are none.
+    block : their numbers [h], ascending. matrices : [h, 3, freedoms, freedoms], the new velocity is
+    the first times the old one plus the second times the one without dashpots; the third holds the
+    dashpots, N s/m. springs : [h, 3, freedoms, freedoms], of dashpots behind springs: the new
+    closures are the first times the old ones plus the second, s, times the velocity; the third
+    times the closures is the force against the block, N/m. None without.
     """
 
     block: np.ndarray
@@ -185,12 +185,11 @@ class Held(NamedTuple):
 class Blocks(NamedTuple):
     """Constants of the blocks.
 
-    inertia : float array [N, freedoms], mass (kg) and moments of inertia (kg m2). dt : s. keep :
-    what mass-proportional damping leaves of a velocity in a step. local : Cundall's damping.
-    gravity : float array [dim], m/s2. tensor : float array [N, 3, 3], kg m2, of inertia; None where
-    no rotations of a block have inertia in common. mass : of what gravity pulls [N], kg, where that
-    is not what moves; else None. stages : kick and drift of each stage of a step that is composed
-    of them [stages, 2], s; None of leapfrog.
+    inertia : mass (kg) and moments of inertia (kg m2) [N, freedoms]. dt : s. keep : factor of
+    mass-proportional damping on a velocity per step. local : Cundall's local damping. gravity :
+    [dim], m/s2. tensor : inertia tensors [N, 3, 3], kg m2; None without products of inertia. mass :
+    gravitational mass [N], kg, where it differs from the inertial mass; else None. stages : kick
+    and drift of each stage of a composed step [stages, 2], s; None for leapfrog.
     """
 
     inertia: np.ndarray
@@ -206,12 +205,10 @@ class Blocks(NamedTuple):
 class Model(NamedTuple):
     """The constants of a run.
 
-    laws : the parameters of the joint law [field, column], one column where all joints are alike.
-    held : None where nothing acts on blocks from outside. places, watched : int arrays [r] and [w],
-    recorded blocks and contacts.
-
-    Contacts may name blocks beyond the last that has an inertia: walls, which stand still or are
-    shaken.
+    laws : the parameters of the joint law [field, column], one column where all joints are equal.
+    held : a `Held`; None where no external force or dashpot acts on blocks. places, watched :
+    recorded blocks [r] and contacts [w]. walls : their number; a wall is fixed or shaken, has no
+    inertia, and is numbered after the blocks.
     """
 
     form: KernelFlags
@@ -230,20 +227,19 @@ class Model(NamedTuple):
 
     @property
     def inertia(self) -> np.ndarray:
-        """Momenta over what the state has as velocities [N, freedoms]."""
+        """Momentum per unit of `State.v` [N, freedoms]; 1 where that is an angular momentum."""
         found = self.blocks.inertia
         return np.hstack([found[:, :3], np.ones((len(found), 3))]) if self.form.finite else found
 
 
 class State(NamedTuple):
-    """The state: displacement u [N, freedoms] at a whole step, velocity v [N, freedoms] half a step
-    before it, or with it in composed steps, of the blocks and then the walls. With finite rotations
-    those in u are the vector parts of unit quaternions, with the scalar parts in turn [N], else
-    None, and those in v angular momenta, N m s.
+    """The state of the blocks and then the walls.
 
-    history : float array [chunks, rows LANES], what contacts remember; None where that is nothing.
-    sums : float array [terms], J, what has been dissipated or put in; None without a ledger.
-    closure : float array [h, freedoms], m, of the springs of held blocks; None without.
+    u : displacement [N, freedoms] at a whole step. v : velocity [N, freedoms] half a step before,
+    in composed steps at the same time. With finite rotations, u holds the vector parts of unit
+    quaternions, `turn` [N] their scalar parts (else None), and v angular momenta, N m s. history :
+    of contacts [chunks, rows LANES]; None without. sums : dissipated or supplied energy [terms], J;
+    None without a ledger. closure : of the springs of held blocks [h, freedoms], m; None without.
     """
 
     u: np.ndarray
@@ -255,10 +251,13 @@ class State(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """What is recorded: displacement and velocity of blocks [place, freedoms, sample], as in
-    `State`, with scalar parts of quaternions as a further displacement, contacts [watched,
-    `KernelFlags.recorded`, sample], the ledger [term, sample], J, and the closures of held blocks
-    [h, freedoms, sample], m; None without."""
+    """Recorded samples.
+
+    displacement, velocity : of blocks [place, freedoms, sample], as in `State`; with finite
+    rotations the scalar parts of quaternions are the last displacement. contact : [watched,
+    `KernelFlags.recorded`, sample]. energy : the ledger [term, sample], J; None without. closure :
+    of held blocks [h, freedoms, sample], m; None without.
+    """
 
     displacement: np.ndarray
     velocity: np.ndarray
@@ -275,11 +274,12 @@ def held_by(
     keep: float = 1.0,
     springs: np.ndarray | None = None,
 ) -> Held:
-    """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and their numbers [h],
-    ascending; masses : matrices of mass and inertia of all blocks [N, freedoms, freedoms]. keep :
-    what mass-proportional damping leaves of a velocity in a step. springs : as in `Held`.
+    """Return held blocks from their dashpots [h, freedoms, freedoms], N s/m, and numbers [h].
 
-    Their dashpots see the mean velocity of both half steps: with a = dt (1 + keep) / 4,
+    masses : matrices of mass and inertia of all blocks [N, freedoms, freedoms]. keep : as in
+    `Blocks`. springs : as in `Held`.
+
+    Dashpots act on the mean velocity of both half steps: with a = dt (1 + keep) / 4,
     (1 + a M^-1 C) v[n+1/2] = v - a M^-1 C v[n-1/2], v the velocity without them.
     """
     lost = 0.25 * dt * (1 + keep) * np.linalg.solve(masses[block], dashpot)
@@ -309,7 +309,7 @@ def state_at_rest(model: Model) -> State:
 
 
 def samples_for(model: Model, count: int) -> Samples:
-    """Return empty samples of this number."""
+    """Return arrays of zeros for `count` samples."""
     form, places, closure = model.form, len(model.places), None
     displacement = np.zeros((places, form.freedoms + form.finite, count))
     velocity = np.zeros((places, form.freedoms, count))
@@ -321,5 +321,5 @@ def samples_for(model: Model, count: int) -> Samples:
 
 
 def first_of(samples: Samples, count: int) -> Samples:
-    """Return the first of samples."""
+    """Return the first `count` samples."""
     return Samples._make(None if one is None else one[..., :count] for one in samples)

@@ -1,5 +1,4 @@
-"""Motion of the blocks of one tile in one leapfrog step, or in one stage of a composed step, by the
-forces on them."""
+"""Motion of the blocks of a tile in one leapfrog step, or one stage of a composed step."""
 
 from collections.abc import Callable
 from math import copysign
@@ -11,27 +10,27 @@ from jointwave.joints.formula import formula
 
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
 CHUNK, BLOCK, HELD, PLACE, SEEN = range(5)
-#: Rows of the ledger of one step, J in lanes, in the order of `results.dataset.TERMS`, and AFTER
-#: further on what is added behind the step.
+#: Rows of the ledger of one step, J in lanes, in the order of `results.dataset.TERMS`; at an offset
+#: AFTER, the same rows for the half step after it.
 KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
 AFTER = 8 * L
-SUMMED = VISCOUS, FRICTION, BOUNDARY, WORK  # the others are states
+SUMMED = VISCOUS, FRICTION, BOUNDARY, WORK  # over steps; the others are states
 
 
 def motion_for(form: KernelFlags) -> Callable:
-    """Return the formula of a tile's motion: what its form lacks is not compiled."""
+    """Return the kernel of a tile's motion; absent effects are not compiled."""
     dim, freedoms, has_ledger, held, gravity = (
         form.dim, form.freedoms, form.ledger, form.held, form.gravity
     )  # fmt: skip
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
     damped, finite, matched = form.mass_damping or local_damping, form.finite, form.matched
-    balanced = has_ledger and (damped or finite)  # by the forces of the step
+    balanced = has_ledger and (damped or finite)  # the ledger needs the forces after the motion
     oblique, SPARE, BEFORE = form.oblique and not finite, form.buffer.spare, form.buffer.before
     stages, composed, AT_ONCE = form.stages, form.stages > 1, L - L % freedoms
 
     @formula
     def sprung(blocks, closure, r, a):
-        """Return what the springs of a held block take from its freedom a."""
+        """Return the force of the springs against freedom a of held block r."""
         found = 0.0
         for m in range(freedoms):
             found += blocks.springs[r, 2, a, m] * closure[r, m]
@@ -39,7 +38,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def close_springs(blocks, first, turn, closure, r, u, v, i, spare):
-        """Advance the closures of the springs of a held block by its velocity."""
+        """Advance the spring closures of held block r by its velocity."""
         for a in range(freedoms):
             spare[a] = 0.0
             for m in range(freedoms):
@@ -72,8 +71,8 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def advance(u, v, force, inverse, before, pushed, drift, keep, local, noted):
-        """Advance velocities by their forces, and displacements by these; note velocities before if
-        their energy is asked for."""
+        """Advance velocities by the forces, then displacements by the velocities; with `noted`,
+        store the old velocities for the ledger."""
         for i in range(u.size):
             old, gain = v[i], pushed * force[i]
             if local_damping:  # less by local |gain| along v
@@ -90,7 +89,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def advance_oblique(blocks, first, u, v, force, before, pushed, drift):
-        """The same of blocks from `first` on whose rotations have inertia in common."""
+        """Do the same for blocks from `first` on whose inertia tensors are full."""
         keep = blocks.keep
         for block in range(u.size // freedoms):
             back = blocks.back[first + block]
@@ -122,7 +121,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def drag_held(blocks, first, last, begin, u, v, before, spare):
-        """Take from held blocks what their dashpots take of the velocity without them."""
+        """Apply the boundary dashpots: correct the velocity and displacement of held blocks."""
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
             for a in range(freedoms):
@@ -136,9 +135,9 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def drag_turned(blocks, first, r, turn, u, v, inertia, before, closure, spare):
-        """Do with finite rotations what `drag_held` does, for row r: dashpots give a block the
-        impulse that they would if it had not turned. Leave velocities before, impulses, and what
-        springs take."""
+        """Apply the boundary dashpots of held block r with finite rotations: the impulse is that on
+        the unrotated block. Leave in `spare` the old and new velocities, impulses, spring forces.
+        """
         block, matrices = blocks.held[r] - first, blocks.matrices[r]
         i = 6 * block
         for a in range(6):
@@ -161,7 +160,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_turned(blocks, first, r, turn, u, v, force, drive, n, kick, spare, ledger):
-        """Do what `account_held` does, by what `drag_turned` leaves."""
+        """Do the same as `account_held`, from what `drag_turned` leaves in `spare`."""
         for a in range(6):
             i = 6 * (blocks.held[r] - first) + a
             old, new = spare[a], rate(blocks, first, turn, u, v, i)
@@ -176,7 +175,8 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_held(blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger):
-        """Enter the work of external forces, and of dashpots, which it adds to the forces."""
+        """Add the work of external forces and dashpots to the ledger, and with damping the dashpot
+        forces to `force`."""
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
             for a in range(freedoms):
@@ -195,7 +195,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_motion(blocks, first, turn, u, v, before, inertia, force, kick, sampled, ledger):
-        """Enter the kinetic energy of blocks from `first` on, and what damping took of it."""
+        """Add the kinetic energy of blocks from `first` on, and their damping loss, to the ledger."""
         for begin in range(0, u.size, AT_ONCE):
             block, own = first + begin // freedoms, u[begin:]
             m, push = inertia[begin:], force[begin:]
@@ -207,7 +207,7 @@ def motion_for(form: KernelFlags) -> Callable:
                 if finite:
                     old = rate(blocks, block, turned, own, then, c)
                     new = rate(blocks, block, turned, own, now, c)
-                if damped:  # what is missing in the block's momentum
+                if damped:  # the impulse of damping: momentum gained, less that of the forces
                     lost = after - momentum(blocks, m, block, c, then) - kick * push[c]
                     ledger[VISCOUS + c] -= 0.5 * lost * old
                     ledger[VISCOUS + AFTER + c] -= 0.5 * lost * new
@@ -221,7 +221,7 @@ def motion_for(form: KernelFlags) -> Callable:
         first, last, kick, drift = tiles[HELD, t], tiles[HELD, t + 1], blocks.dt, blocks.dt
         if composed:
             kick, drift = blocks.stages[n % stages, 0], blocks.stages[n % stages, 1]
-        # Slices begin at 0: else indices are taken to wrap around, and loops are not vectorised.
+        # Slices begin at 0: else numba allows for negative indices and does not vectorise.
         u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
         before, pushed, turn = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep), state.turn

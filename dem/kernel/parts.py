@@ -1,9 +1,9 @@
-"""Parts of rigid blocks, each of which a thread steps.
+"""Parts of rigid blocks, one for each thread.
 
-A part owns consecutive tiles and has a state of its own. It takes `depth` steps between two
-exchanges with its neighbours, and for these it also steps some of their tiles: those that its own
-depend on, one tile less in each step. What is found twice is found from the same numbers in the
-same order, so every bit of the motion is that of one thread.
+A part owns consecutive tiles and its own copy of the state. It takes `depth` steps between two
+exchanges with its neighbours, and therefore also steps the neighbours' tiles on which its own
+depend, one tile less in each step. What two parts compute, both compute from the same numbers in
+the same order, so the motion is bit for bit that of one thread.
 """
 
 import os
@@ -19,17 +19,20 @@ from jointwave.dem.kernel.model import Samples, State
 from jointwave.dem.kernel.motion import AFTER, BLOCK, CHUNK, HELD, PLACE, SEEN
 from jointwave.numerics.cache_lines import zeros
 
-ROWS = BLOCK, BLOCK, CHUNK, None, HELD, BLOCK  # of the tiles' table: what has the fields of a state
-DEEPEST, CACHE = 16, 3 << 19  # steps, and bytes of a core's own cache, that a pass takes
-OF_FREEDOM = 32  # bytes: its motion, inertia and force
-THIN = 16  # tiles for each step between exchanges and each border
-ENOUGH_BLOCKS = {1: 200_000, 2: 40_000, 3: 40_000}  # by dimension: from there on threads pay
-FEWEST = 4  # tiles of a part: two would be stepped by both neighbours
+ROWS = BLOCK, BLOCK, CHUNK, None, HELD, BLOCK  # of the tiles' table, for each field of a state
+DEEPEST, CACHE = 16, 3 << 19  # limits of a pass: steps, and bytes of a core's own cache
+OF_FREEDOM = 32  # bytes of its motion, inertia and force
+THIN = 16  # least number of tiles for each step between exchanges and each border
+ENOUGH_BLOCKS = {1: 200_000, 2: 40_000, 3: 40_000}  # from which threads pay, by dimension
+FEWEST = 4  # tiles of a part: both neighbours would step two
 
 
 class Work(NamedTuple):
-    """What the kernel works on: forces on all blocks, zero, a buffer, and ledgers of the steps of a
-    band, zero, with one for tiles that others own [depth + 1, 2 AFTER]."""
+    """Work arrays of the kernel.
+
+    force : on all blocks, zero between steps. buffer : of a chunk and a tile. ledgers : of each
+    step of a band, the last one for tiles of other parts [depth + 1, 2 AFTER], zero between bands.
+    """
 
     force: np.ndarray
     buffer: np.ndarray
@@ -39,9 +42,9 @@ class Work(NamedTuple):
 class Part(NamedTuple):
     """A part of the blocks.
 
-    first, last : its tiles. tiles : the tiles' table, in which tiles of others record nothing.
-    state, samples : arrays as large as those of the whole, of which it touches its own rows and
-    some beside them. The ledger of its samples and its sums have what its tiles contribute.
+    first, last : its tiles are first .. last - 1. tiles : the tiles' table, without recorded blocks
+    and contacts in tiles of other parts. state, samples : arrays of full size, in which it uses its
+    own rows and some of its neighbours'; sums and energy hold the contribution of its own tiles.
     """
 
     first: int
@@ -53,7 +56,7 @@ class Part(NamedTuple):
 
 
 def work_for(numbers: int, buffer: int, depth: int, has_ledger: bool) -> Work:
-    """Return what the kernel works on; numbers : of forces. buffer : its size, in numbers."""
+    """Return work arrays for so many force components, and a buffer of this size."""
     ledgers = zeros((depth + 1, 2 * AFTER)) if has_ledger else None
     return Work(np.zeros(numbers), zeros(buffer), ledgers)
 
@@ -61,11 +64,10 @@ def work_for(numbers: int, buffer: int, depth: int, has_ledger: bool) -> Work:
 def divided(
     chunks: Chunks, history: np.ndarray | None, freedoms: int, threads: int
 ) -> tuple[list[int], int]:
-    """Return the first tile of each part, and where the last one ends, and how many steps a pass
-    over the tiles takes: as many as a core's own cache holds tiles, as far as few tiles are then
-    stepped by two parts.
+    """Return the first tile of each part, with the end of the last, and the steps of a pass.
 
-    All parts have as many chunks to step. There are fewer parts than threads of few tiles.
+    A pass takes as many steps as a core's own cache holds tiles, but fewer if many tiles were then
+    stepped by two parts. All parts step about as many chunks; few tiles make fewer parts.
     """
     tiles = len(chunks.first_chunk) - 1
     threads = max(1, min(threads, tiles // FEWEST))
@@ -83,7 +85,7 @@ def divided(
 
 
 def part_of(whole: Part, first: int, last: int, work: Work) -> Part:
-    """Return the part that owns the tiles first .. last - 1, at rest."""
+    """Return the part that owns the tiles first .. last - 1, with a state of zeros."""
     tiles, samples = whole.tiles.copy(), whole.samples
     for row in (PLACE, SEEN):
         tiles[row] = tiles[row].clip(tiles[row, first], tiles[row, last])
@@ -93,17 +95,17 @@ def part_of(whole: Part, first: int, last: int, work: Work) -> Part:
 
 
 def like(state: State) -> State:
-    """Return a state of zeros; rows that are never touched take no memory."""
+    """Return a state of zeros; rows that are never used take no memory."""
     return State._make(None if one is None else zeros(one.shape) for one in state)
 
 
 def flat(state: State) -> State:
-    """Return a state with motion as the kernel takes it."""
+    """Return a state with flat arrays of motion, as the kernel needs them."""
     return state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
 
 
 def copy(source: State, target: State, tiles: np.ndarray, first: int, last: int) -> None:
-    """Copy what both states have of tiles first .. last - 1, as far as there are such."""
+    """Copy the rows of the existing tiles among first .. last - 1, in fields that both have."""
     begin, end = tiles[:, max(first, 0)], tiles[:, min(last, tiles.shape[1] - 1)]
     for one, other, row in zip(source, target, ROWS, strict=True):
         if one is not None and other is not None and row is not None:
@@ -117,15 +119,15 @@ def take_together(
     steps: tuple[int, int, int],
     advance: Callable[[Part, int, int], None],
 ) -> None:
-    """Take steps of all parts, each on a thread of its own.
+    """Step all parts, each on its own thread.
 
-    walls : their number. steps : the first, one beyond the last, and how many between exchanges.
-    advance : of a part, the first step and one beyond the last, takes so many.
+    walls : their number. steps : first, one beyond the last, and number between exchanges.
+    advance(part, begin, end) : takes the steps begin .. end - 1 of a part.
     """
     first, last, depth = steps
     state, barrier, freedoms = whole.state, Barrier(len(parts)), whole.state.u.shape[1]
     edges = [like(state), like(state)]
-    if depth == 1:  # then each contact is stepped by all that need it
+    if depth == 1:  # each part then steps all contacts that it needs
         edges = [edge._replace(history=None) for edge in edges]
 
     def exchange(part: Part, edge: State) -> None:
@@ -147,7 +149,7 @@ def take_together(
         barrier.wait()
         for number, begin in enumerate(range(first, last, depth)):
             if number > 0:
-                exchange(part, edges[number % 2])  # others may still read the other one
+                exchange(part, edges[number % 2])  # other threads may still read the other buffer
             incomplete = freedoms * block[b], freedoms * block[min(b + depth, whole.last)]
             part.work.force[slice(*incomplete)] = 0.0
             advance(part, begin, min(begin + depth, last))
@@ -157,7 +159,7 @@ def take_together(
         try:
             take(part)
         except BaseException:
-            barrier.abort()  # else the others wait forever
+            barrier.abort()  # else other threads wait forever
             raise
 
     if state.sums is not None:
@@ -168,7 +170,7 @@ def take_together(
 
 
 def add_up(whole: Part, parts: list[Part], samples: slice) -> None:
-    """Put the ledgers of all parts together."""
+    """Sum the ledgers of all parts."""
     if whole.state.sums is not None:
         whole.state.sums[:] = sum(part.state.sums for part in parts)
         found = [part.samples.energy[:, samples] for part in parts]
@@ -176,7 +178,7 @@ def add_up(whole: Part, parts: list[Part], samples: slice) -> None:
 
 
 def thread_count(asked: int | None, blocks: int, dim: int) -> int:
-    """Return the threads to use: as requested, or one for few blocks and all cores for many."""
+    """Return the threads to use: as requested, else one for few blocks and all cores for many."""
     if asked is not None:
         return asked
     return _cores() if blocks >= ENOUGH_BLOCKS[dim] else 1

@@ -1,8 +1,8 @@
-"""Relative motion of blocks at contacts in the plane and in space; its adjoint, their forces.
+"""Relative motion of blocks at contacts in the plane and in space, and its adjoint, the forces.
 
-With finite rotations, as `kernel` has it: points of block i, seen from block j in the axes that
-turn with it. Rows of relative motion are then the jump at the centre of the face, and what further
-points along the first and the second tangent add to it, per metre.
+With finite rotations, the motion of points of block i in axes that turn with block j (see `loop`).
+The rows are then the jump at the centre of the face, and its gradients along the first and the
+second tangent.
 """
 
 from collections.abc import Callable
@@ -29,24 +29,24 @@ from jointwave.joints.formula import formula
 
 @formula
 def put(q, row, values):
-    """Put three numbers into rows of the buffer."""
+    """Set three consecutive rows of the buffer."""
     q[row], q[row + L], q[row + 2 * L] = values
 
 
 @formula
 def in_axes(k, frame, a):
-    """Return a vector given in the frame of a contact, which begins at a place of the table."""
+    """Return in global axes a vector a of a contact's frame, which begins at k of the table."""
     found = plus(times(a[0], three(k, frame, L)), times(a[1], three(k, frame + 3 * L, L)))
     return plus(found, times(a[2], three(k, frame + 6 * L, L)))
 
 
 def orientations_for(form: KernelFlags) -> Callable:
-    """Return the formula of the quaternions of the blocks of a contact, among what is gathered."""
+    """Return the kernel that reads a contact's two quaternions from the gathered rows."""
     VECTOR, SCALAR = form.buffer.gathered + 3 * L, form.buffer.gathered + 9 * L
 
     @formula
     def orientations(q, c):
-        """Return those of i and of j in lane c."""
+        """Return the quaternions of blocks i and j in lane c."""
         x, y, z = three(q, VECTOR + c, L)
         i = q[SCALAR + c], x, y, z
         x, y, z = three(q, VECTOR + 3 * L + c, L)
@@ -56,14 +56,14 @@ def orientations_for(form: KernelFlags) -> Callable:
 
 
 def finite_jump_for(form: KernelFlags) -> Callable:
-    """Return the formula of the relative motion of a chunk's contacts, of what is gathered."""
+    """Return the kernel of relative motion under finite rotation, from the gathered rows."""
     ARM_I, ARM_J, FRAME = form.table.arm_i, form.table.arm_j, form.table.frame
     GATHERED, JUMP = form.buffer.gathered, form.buffer.jump
     SCALAR, orientations = GATHERED + 9 * L, orientations_for(form)
 
     @formula
     def finite_jump(turn, at, k, q):
-        """Put the rows of relative motion; turn : scalar parts of the blocks' quaternions."""
+        """Set the rows of relative motion; turn : scalar parts of the blocks' quaternions."""
         for c in range(L):
             i, j = np.uint64(at[c]), np.uint64(at[L + c])
             q[SCALAR + c], q[SCALAR + L + c] = turn[i // np.uint64(6)], turn[j // np.uint64(6)]
@@ -87,7 +87,7 @@ def finite_jump_for(form: KernelFlags) -> Callable:
 
 
 def finite_moments_for(form: KernelFlags) -> Callable:
-    """Return the formula of the force on j and the moments about both centroids."""
+    """Return the kernel of forces and moments under finite rotation."""
     ARM_I, ARM_J, FRAME = form.table.arm_i, form.table.arm_j, form.table.frame
     rows, orientations = form.buffer, orientations_for(form)
     GATHERED, JUMP, FORCE, SPREAD, ON_J, ON_I = (
@@ -96,7 +96,7 @@ def finite_moments_for(form: KernelFlags) -> Callable:
 
     @formula
     def finite_moments(k, q):
-        """Put the force on j, and the moments about the centroids of j and of i, into rows."""
+        """Set the rows of the force on j and of the moments about the centroids of j and i."""
         for c in range(L):
             force, jump = three(q, FORCE + c, L), three(q, JUMP + c, L)
             x, y, z = three(q, JUMP + 3 * L + c, L)
@@ -117,7 +117,7 @@ def finite_moments_for(form: KernelFlags) -> Callable:
 
 
 def relative_for(form: KernelFlags) -> Callable:
-    """Return the formula of the relative motion of a chunk's contacts."""
+    """Return the kernel of the relative motion of a chunk's contacts."""
     dim, turns, freedoms, rotations = form.dim, form.turns, form.freedoms, form.rotations
     shaken, in_row, GATHERED = form.shaken, form.in_row, form.buffer.gathered
     finite, finite_jump = form.finite, finite_jump_for(form)
@@ -125,8 +125,8 @@ def relative_for(form: KernelFlags) -> Callable:
 
     @formula
     def gather(m, walls, n, kind, still, at, row_from, q):
-        """Put displacements of j less those of i, and the rotations of both, into rows. Loops that
-        gather are not vectorised, those along a row of blocks from `row_from` on are."""
+        """Set the rows of displacements of j less those of i, and of both rotations. Loops that
+        gather are not vectorised; those along a row of blocks from `row_from` on are."""
         if in_row and row_from >= 0:
             i = m[row_from:]
             for b in range(dim):
@@ -153,11 +153,12 @@ def relative_for(form: KernelFlags) -> Callable:
 
     @formula
     def relative(m, turn, walls, n, kind, still, at, row_from, k, q, to):
-        """Put the jump at the centres of contacts, and the rotation of j against i, in their frame,
-        into the rows from `to` on.
+        """Set the rows from `to` on: jump at the centres of contacts, and rotation of j relative to
+        i, in the contact's frame.
 
-        m : motion of blocks. turn : as in `State`. kind : row of it in the motion of walls. still :
-        where theirs begins, less one block. k : the chunk's table. q : the buffer.
+        m : motion of blocks. turn : as in `State`. kind : of motion of walls, 0 displacement, 1
+        velocity. still : offset of the walls' motion, less one block. k : the chunk's table.
+        q : the buffer.
         """
         gather(m, walls, n, kind, still, at, row_from, q)
         if finite:
@@ -193,7 +194,7 @@ def relative_for(form: KernelFlags) -> Callable:
 
 
 def onto_blocks_for(form: KernelFlags) -> Callable:
-    """Return the formula that adds the forces of a chunk's contacts to their blocks."""
+    """Return the kernel that adds the forces of a chunk's contacts to their blocks."""
     dim, turns, freedoms, in_row = form.dim, form.turns, form.freedoms, form.in_row
     finite, finite_moments = form.finite, finite_moments_for(form)
     FRAME, ARM_I, ARM_J = form.table.frame, form.table.arm_i, form.table.arm_j
@@ -203,7 +204,7 @@ def onto_blocks_for(form: KernelFlags) -> Callable:
 
     @formula
     def about_centroids(k, q):
-        """Put the force on j, and the moments about the centroids of j and of i, into rows."""
+        """Set the rows of the force on j and of the moments about the centroids of j and i."""
         for c in range(L):
             f_n, j, i = q[FORCE + c], ON_J + c, ON_I + c
             if dim == 2:
@@ -224,9 +225,9 @@ def onto_blocks_for(form: KernelFlags) -> Callable:
 
     @formula
     def onto_blocks(k, q, at, row_from, lanes, last, force):
-        """Add what acts on blocks, in the order of the contacts.
+        """Add forces and moments to the blocks, in the order of the contacts.
 
-        lanes : contacts of the chunk. last : where the motion of walls begins.
+        lanes : contacts of the chunk. last : offset of the walls' motion.
         """
         if finite:
             finite_moments(k, q)

@@ -1,14 +1,14 @@
-"""Rotations of any size, by unit quaternions, and blocks that turn freely.
+"""Rotations of any size by unit quaternions, and the free rotation of blocks.
 
-With I_2 the middle one of a block's principal moments of inertia, a and c its axes of the smallest
-and the largest, and L its angular momentum, twice its energy is
+With I_1 <= I_2 <= I_3 a block's principal moments of inertia, a and c its axes of I_1 and I_3, and
+L its angular momentum, twice its energy is
 
     L.L / I_2 + (1/I_1 - 1/I_2) (L.a)^2 + (1/I_3 - 1/I_2) (L.c)^2.
 
-Each term alone turns the block about an axis that stays, L or a or c, and a step is made of these:
-half about c, about a, half about c, about L. It leaves L as it is and is exact for bodies two of
-whose moments are equal, else of second order and symplectic (Touma & Wisdom, Astron. J. 107, 1994;
-Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107, 1997).
+Each term alone turns the block about a constant axis, L, a or c. A step composes these rotations:
+half about c, about a, half about c, about L. It conserves L and is exact where two moments are
+equal, else of second order and symplectic (Touma & Wisdom, Astron. J. 107, 1994; Dullweber,
+Leimkuhler & McLachlan, J. Chem. Phys. 107, 1997).
 
 In kernels vectors, quaternions (scalar part first) and the columns of R - 1 are tuples of numbers.
 """
@@ -18,13 +18,13 @@ import numpy as np
 from jointwave.dem.kernel.model import Blocks
 from jointwave.joints.formula import formula
 
-ALIKE = 1e-12  # of a moment of inertia: two that differ by less are equal
-# Columns of the constants of free motion: a, c, 1/I_2, and what is beside it along a and along c.
+ALIKE = 1e-12  # relative difference below which moments of inertia count as equal
+# Columns of the constants of free motion: a, c, 1/I_2, then 1/I_1 - 1/I_2 and 1/I_3 - 1/I_2.
 SMALLEST, LARGEST, MIDDLE, EXCESS = 0, 3, 6, 7
 
 
 def free_motion(blocks: Blocks) -> np.ndarray:
-    """Return the constants by which blocks turn freely [N, 9]."""
+    """Return the constants of free rotation of the blocks [N, 9]."""
     tensor = blocks.tensor
     if tensor is None:
         tensor = blocks.inertia[:, 3:, None] * np.eye(3)
@@ -67,7 +67,7 @@ def times(k, a):
 
 @formula
 def three(m, i, stride):
-    """Return three numbers of an array from i on."""
+    """Return three entries of an array from i on."""
     return m[i], m[i + stride], m[i + 2 * stride]
 
 
@@ -84,7 +84,7 @@ def product(p, q):
 
 @formula
 def columns_less_one(q):
-    """Return the three columns of R - 1, which keep the digits of small rotations."""
+    """Return the columns of R - 1, which keep the digits of small rotations."""
     w, x, y, z = q
     return (
         (-2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
@@ -95,7 +95,7 @@ def columns_less_one(q):
 
 @formula
 def further(c, a):
-    """Return R a - a, of the columns c of R - 1."""
+    """Return R a - a from the columns c of R - 1."""
     return (
         c[0][0] * a[0] + c[1][0] * a[1] + c[2][0] * a[2],
         c[0][1] * a[0] + c[1][1] * a[1] + c[2][1] * a[2],
@@ -105,13 +105,13 @@ def further(c, a):
 
 @formula
 def further_back(c, a):
-    """Return the transpose of R times a, less a, of the columns c of R - 1."""
+    """Return R^T a - a from the columns c of R - 1."""
     return dot(c[0], a), dot(c[1], a), dot(c[2], a)
 
 
 @formula
 def turned(c, a):
-    """Return R a, of the columns c of R - 1."""
+    """Return R a from the columns c of R - 1."""
     return plus(a, further(c, a))
 
 
@@ -119,7 +119,7 @@ def turned(c, a):
 def turn_by(a):
     """Return the unit quaternion of a rotation by twice the vector a, for small angles.
 
-    cos and sin by their series up to the eighth power: below 1e-16 up to 0.2 rad a step.
+    cos and sin by their series to the eighth power: errors below 1e-16 up to 0.2 rad a step.
     """
     s = dot(a, a)
     c = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s / 40320.0)))
@@ -140,7 +140,7 @@ def angular_velocity(free, q, momentum):
 
 @formula
 def angular_momentum(free, rate):
-    """Return the angular momentum of an angular velocity, of a block that has not turned."""
+    """Return the angular momentum of an unrotated block from its angular velocity."""
     middle = 1.0 / free[MIDDLE]
     found = times(middle, rate)
     for k in range(2):
@@ -151,7 +151,7 @@ def angular_momentum(free, rate):
 
 @formula
 def turned_about(free, k, q, momentum, dt):
-    """Return a quaternion after dt, s, of the term of its own axis k alone."""
+    """Return a quaternion after dt, s, of rotation about the block's own axis k alone."""
     if free[EXCESS + k] == 0.0:
         return q
     axis = three(free, 3 * k, 1)
@@ -161,7 +161,7 @@ def turned_about(free, k, q, momentum, dt):
 
 @formula
 def turned_freely(free, q, momentum, dt):
-    """Return a quaternion after dt, s, under no moment."""
+    """Return a quaternion after dt, s, of free rotation."""
     q = turned_about(free, 1, q, momentum, 0.5 * dt)
     q = turned_about(free, 0, q, momentum, dt)
     q = turned_about(free, 1, q, momentum, 0.5 * dt)
@@ -172,14 +172,14 @@ def turned_freely(free, q, momentum, dt):
 
 @formula
 def quaternion(turn, u, block):
-    """Return that of a block from its displacements u and the scalar parts."""
+    """Return the quaternion of a block from its vector part in u and its scalar part in turn."""
     x, y, z = three(u, 6 * block + 3, 1)
     return turn[block], x, y, z
 
 
 @formula
 def turn_blocks(blocks, first, turn, u, v, dt):
-    """Turn blocks from `first` on by their angular momenta in dt, s."""
+    """Rotate the blocks from `first` on by their angular momenta over dt, s."""
     for block in range(u.size // 6):
         i, free = 6 * block + 3, blocks.free[first + block]
         q = quaternion(turn, u, block)
@@ -188,7 +188,7 @@ def turn_blocks(blocks, first, turn, u, v, dt):
 
 @formula
 def rate(blocks, first, turn, u, v, i):
-    """Return freedom i of the velocities of blocks from `first` on."""
+    """Return component i of the velocities, angular velocities included, of blocks from `first` on."""
     block = i // 6
     if i % 6 < 3:
         return v[i]

@@ -1,5 +1,5 @@
-"""Forces of contacts in one dimension: loops along the row, for all chunks of a tile at once, that
-no frame and no gathered motion interrupt."""
+"""Forces of contacts in one dimension: loops along the row over all chunks of a tile, without
+frames and gathered motion."""
 
 from collections.abc import Callable
 
@@ -14,10 +14,7 @@ from jointwave.joints.law import History, law_at, law_of, rows_of, traction_for
 
 
 def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
-    """Return the formula of the forces of a tile's contacts along one axis.
-
-    record : the formula that samples a chunk's.
-    """
+    """Return the kernel of contact forces along one axis; record : samples a chunk's contacts."""
     parts, has_ledger, stressed, drags = form.parts, form.ledger, form.stressed, form.drags
     fails, traction, shaken = form.points, traction_for(parts.shear, parts.path), form.shaken
     dashpots, softening, varied, used = (
@@ -31,7 +28,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
 
     @formula
     def force_of(law, table, h, ledger, g, c, gap, now, dt):
-        """Return the force on j in lane c of chunk g; gap, now : of j against i, m and m/s."""
+        """Return the force on j in lane c of chunk g; gap : m, and now : its rate, m/s."""
         area, rate, opening = table[g, AREA + c], 0.0, 0.0
         if stressed:
             gap = gap + table[g, START + c]
@@ -62,7 +59,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
 
     @formula
     def account(law, table, h, ledger, g, c, gap):
-        """Enter what the spring has, and what opening has spent."""
+        """Add the elastic energy and the spent fracture energy to the ledger."""
         opening = 0.0
         if stressed:
             gap = gap + table[g, START + c]

@@ -1,5 +1,5 @@
 """Forces of a chunk's contacts in their frames, in the plane and in space: point by point where
-joints can fail, of the face as a whole where they always hold."""
+joints can fail, for the whole face where they always hold."""
 
 from collections.abc import Callable
 
@@ -18,7 +18,7 @@ def add(q, row, value):
 
 
 def point_forces_for(form: KernelFlags) -> Callable:
-    """Return the formula of the forces at the points of contacts, by the whole law."""
+    """Return the kernel of forces at contact points by the full joint law."""
     parts, dim, turns, stressed = form.parts, form.dim, form.turns, form.stressed
     dashpots, varied, has_ledger, finite = parts.dashpots, parts.varied, form.ledger, form.finite
     softening, residual, path_dependent = parts.softening, parts.residual, parts.path
@@ -35,7 +35,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def at_point(q, row, c, e_1, e_2):
-        """Return gap and slip, or their rates, at a point of the face, of those at its centre."""
+        """Return gap and slip, or their rates, at a point of the face from those at its centre."""
         gap, x, z = three(q, row + c, L)
         if dim == 2:
             return gap - e_1 * z, x, 0.0
@@ -51,14 +51,14 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def area_within(k, c, area, x, z, gap):
-        """Return the area of a point, none where it is off the face of j or behind that block."""
+        """Return the area of a point, 0 if it lies beyond the face of j or behind block j."""
         behind, along, across = three(k, EXTENT + c, L)
-        # One condition, not three in a row: branches would keep lanes from being worked together.
+        # One condition instead of three: branches would prevent vectorisation over lanes.
         return area if max(abs(x) - along, abs(z) - across, -behind - gap) <= 0.0 else 0.0
 
     @formula
     def history_at(h, before, c):
-        """Return the history of a point; 0 for what it does not have."""
+        """Return the history of a point; absent variables are 0."""
         opening, slide_x, slide_z, cohesion, path = 0.0, h[before + c], 0.0, 0.0, 0.0
         if dim > 2:
             slide_z = h[before + L + c]
@@ -85,7 +85,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def add_force(q, row, c, e_1, e_2, f_n, f_x, f_z):
-        """Add the force at a point, and its first moments about the centre of the face, to rows."""
+        """Add the force at a point and its first moments about the centre of the face."""
         add(q, row + c, f_n)
         add(q, row + L + c, f_x)
         if dim > 2:
@@ -102,7 +102,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def add_drag(q, c, e_1, e_2, f_n, f_x, f_z):
-        """Add the dashpots' force at a point, and its moment about the centre of the face."""
+        """Add the dashpots' force at a point and its moment about the centre of the face."""
         add(q, DRAG + c, f_n)
         add(q, DRAG + L + c, f_x)
         if dim == 2:
@@ -116,10 +116,10 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def point_forces(laws, k, h, q, ledger, dt, weighed):
-        """Put the forces of contacts and their first moments into rows.
+        """Set the rows of the contacts' forces and first moments.
 
-        laws : the table. k, h, q : table and history of the chunk, and its buffer. weighed : 1
-        where states are entered into the ledger, else 0.
+        laws : the table. k, h, q : table and history of the chunk, and its buffer. weighed : 1 to
+        add elastic and fracture energy to the ledger, else 0.
         """
         common = law_of(laws, 0)
         for c in range(FORCE, END):
@@ -167,8 +167,8 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
 
 def face_forces_for(form: KernelFlags) -> Callable:
-    """Return the formula of the forces of joints that always hold: of springs, and dashpots, that
-    are spread evenly over the face."""
+    """Return the kernel of forces of joints that always hold: springs and dashpots spread evenly
+    over the face."""
     dim, turns, stressed, varied = form.dim, form.turns, form.stressed, form.parts.varied
     dashpots, has_ledger, drags, rows = form.parts.dashpots, form.ledger, form.drags, form.buffer
     LAW, JUMP, NOW, FORCE, SPREAD, DRAG = (
@@ -178,7 +178,7 @@ def face_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def push(laws, k, q, ledger, weighed):
-        """Put the forces of the jump at the centre."""
+        """Set the forces due to the jump at the centre."""
         common = law_of(laws, 0)
         for a in range(dim):
             for c in range(L):
@@ -200,7 +200,7 @@ def face_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def bend(laws, k, q, ledger, weighed):
-        """Put the first moments, which the rotation gives by the second moments of the face."""
+        """Set the first moments due to the relative rotation, by the face's second moments."""
         common = law_of(laws, 0)
         for c in range(L):
             law = law_at(q, LAW + c, L) if varied else common
@@ -239,7 +239,7 @@ def face_forces_for(form: KernelFlags) -> Callable:
 
     @formula
     def face_forces(laws, k, h, q, ledger, dt, weighed):
-        """Put the forces of contacts and their first moments into rows, as `point_forces`."""
+        """Set the rows of the contacts' forces and first moments, as `point_forces` does."""
         push(laws, k, q, ledger, weighed)
         if turns:
             bend(laws, k, q, ledger, weighed)
