@@ -1,4 +1,4 @@
-"""Leapfrog steps of rigid blocks: build the arguments of the kernel and call it, one part a thread."""
+"""Leapfrog steps of rigid blocks: arguments of the kernel, and its calls from threads."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -195,7 +195,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_motion(blocks, first, turn, u, v, before, inertia, force, kick, sampled, ledger):
-        """Add the kinetic energy of blocks from `first` on, and their damping loss, to the ledger."""
+        """Add the kinetic energy of blocks from `first` on and their damping loss to the ledger."""
         for begin in range(0, u.size, AT_ONCE):
             block, own = first + begin // freedoms, u[begin:]
             m, push = inertia[begin:], force[begin:]

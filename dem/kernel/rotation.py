@@ -188,7 +188,7 @@ def turn_blocks(blocks, first, turn, u, v, dt):
 
 @formula
 def rate(blocks, first, turn, u, v, i):
-    """Return component i of the velocities, angular velocities included, of blocks from `first` on."""
+    """Return component i of velocity and angular velocity, of blocks from `first` on."""
     block = i // 6
     if i % 6 < 3:
         return v[i]
