@@ -21,7 +21,7 @@ EXCITED = 1e-6  #: part of the largest motion of a unit below which a scene does
 #: Pa s/m: stress below this times the velocity, 1e-8 of what waves in soft soil have, is round-off
 #: of rock that moves as a whole.
 RIGID = 1e-3
-ROUND_OFF = 1e-9  # of the largest displacement (m): rotations (rad) below count as zero
+ROUND_OFF = 1e-9  # m: rotations (rad) below this part of displacements, and the reverse, are zero
 _ONE_VECTOR = {"shear": "stress", "slip": "gap"}
 
 
@@ -52,6 +52,7 @@ def weigh(places: Sequence[Place], moved: np.ndarray) -> Weight:
     units = np.array([unit_of[p.quantity] for p in places], dtype=int)
     loudest = np.zeros(len(UNITS))
     np.maximum.at(loudest, units, motion)
+    loudest[:3] *= loudest[2] >= ROUND_OFF * loudest[3]  # else the rock only turns
     loudest[0] *= loudest[0] >= RIGID * loudest[1]
     at_rest = ((loudest == 0) & loudest.any())[units]
     loudest[3] = max(loudest[3], ROUND_OFF / FAINT * loudest[2])

@@ -100,6 +100,17 @@ def test_in_a_pillar_a_silent_stress_decides_nothing_beside_shear(pillar):
     assert [row.distance.misfit for row in found] == pytest.approx([0.01] * 4)
 
 
+def test_where_a_pillar_only_turns_round_off_of_all_else_decides_nothing(pillar):
+    """Under a couple about the axis: a stress of 1e-10 Pa that blocks do not have was 100 % off."""
+    record = {"record__stress": [5.0], "record__velocity": [5.25], "time__duration": 0.01}
+    turns = row_of_blocks.solve(pillar(load__arm=0.3, **record))
+    noisy = turns.copy()
+    for name, size in {"stress": 1e-10, "velocity": 1e-15, "displacement": 1e-17}.items():
+        noisy[name] = noisy[name] + size * np.sin(1e3 * noisy.time)
+    far = worst(turns * 1.01, noisy)
+    assert far.misfit == pytest.approx(0.01) and far.place.quantity == "rotation"
+
+
 def test_quantities_of_one_unit_are_judged_together():
     """A slip of a thousandth of the displacement is ignored; without displacement it counts."""
     one, other = (
