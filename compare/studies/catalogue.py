@@ -1,4 +1,4 @@
-"""The studies by name: those of a file, the hard cases, and the scattering of waves at joints."""
+"""All studies by name: studies in TOML files, hard cases, and scattering of waves at joints."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from jointwave.compare.studies.study import load, shipped
 def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
     """Return a study by its name or file, with points in OUT/NAME/ and tables in `out`.
 
-    brief : of waves at joints, only every other point. Raises SceneError for an unknown study.
+    brief : scattering only: use every other point. Raises SceneError for an unknown study.
     """
     if name == hard_cases.NAME:
         return hard_cases.experiment(out)
@@ -20,7 +20,7 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
 
 
 def listed() -> list[dict[str, str]]:
-    """Return the name and the title of every study, and the scene of those of a file."""
+    """Return the name and title of every study; for studies in files also the scene."""
     studies = {name: load(name) for name in shipped()}
     in_code = {hard_cases.NAME: hard_cases.TITLE, **scattering.TITLES}
     of_files = [{"study": k, "title": s.title, "scene": s.scene} for k, s in studies.items()]

@@ -1,12 +1,12 @@
 """The cost of every effect of a scene, and the misfit of the result without it.
 
-Both are measured in rigid blocks and, if it applies, in the jointed rock: each effect is left out
-in turn. The misfit is relative L2 from the engine's own result of the complete scene.
+Each effect is left out in turn, in rigid blocks and, if it applies, in jointed rock. The misfit is
+the relative L2 difference from the same engine's result of the complete scene.
 Columns of the table: `scene`, `title`, `variant`, `engine`, `effect`; `reason` why the effect
-cannot be left out, "" if it can; `misfit` of the result without it; `steps` with it over those
-without it; `ns` that it adds to a step of one block, or of one degree of freedom of the rock;
-`noise`, the resolution of timings; `share` of such a step with all effects of the scene, which
-takes `own`, ns; `everything`, ns with every effect there is, in as many rigid blocks.
+cannot be left out, "" if it can; `misfit` without it; `steps`, number with the effect over number
+without it; `ns`, its cost per step and block, or per degree of freedom of the rock; `noise`,
+resolution of the timings, ns; `own`, cost of such a step with all effects of the scene, ns;
+`share`, ns / own; `everything`, cost with every effect that exists, in as many rigid blocks, ns.
 """
 
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ from jointwave.compare.studies.store import FAILURES, Pool, Row, alone, reason_o
 from jointwave.results.dataset import scene_hash
 
 BLOCKS, ROCK = DEM.name, JOINTED_ROCK.name
-#: Variants on the report's page, whose kernels are compiled there anyhow.
+#: Variants that the report page shows; their kernels are compiled there anyhow.
 REPORTED = {
     "guo-li-2002/fig-03": "zeta 0.05",
     "guo-li-2002/fig-05": "matched",
@@ -51,7 +51,7 @@ REPORTED = {
 }
 
 ALONG = (*SLIP, *(key for part in PARTS if part.along for key in part.all_keys))
-#: By effect, the tables and keys that leave it out of a scene; `joints` are all its joints.
+#: The changes that leave each effect out of a scene; `joints` stands for all its law tables.
 WITHOUT: dict[str, dict[str, Any]] = {
     "dashpots": {"damping": {"rayleigh": None}, "joints": {"damping_ratio": None}},
     "no tension": {"joints": {"tension": None}},
@@ -76,12 +76,12 @@ COLUMNS = (
     *("scene", "title", "variant", "engine", "effect", "reason"),
     *("misfit", "steps", "ns", "noise", "share", "own", "everything"),
 )
-Variant = tuple[str, AnyScene]  #: a scene's name as its user knows it, and one of its variants
-Point = tuple[Variant, str]  #: a variant, and the engine that it is run in
+Variant = tuple[str, AnyScene]  #: a scene's name as the user gives it, and one of its variants
+Point = tuple[Variant, str]  #: a variant, and the engine that runs it
 
 
 def left_out(scene: Either, name: str) -> Either:
-    """Return a scene without one of its effects; raises SceneError if there is no such scene."""
+    """Return a scene without one of its effects; raises SceneError if it cannot be left out."""
     if name not in WITHOUT:
         raise SceneError(scene.where, name, None, "is the subject of the scene")
     changes = dict(WITHOUT[name])
@@ -93,8 +93,8 @@ def left_out(scene: Either, name: str) -> Either:
 
 
 def _changed(table: Any, change: Any) -> Any:
-    """Return a table, or each of a list, with keys changed; without its ends, or sides, of a kind;
-    or what is in its place."""
+    """Return a table with changes. A dict changes keys (of each table of a list), a string is the
+    kind of ends or sides to set free, anything else replaces the table."""
     if isinstance(change, str):
         return table.model_copy(update={name: "free" for name, kind in table if kind == change})
     if not isinstance(change, dict):
@@ -105,26 +105,26 @@ def _changed(table: Any, change: Any) -> Any:
 
 
 def reported() -> list[Variant]:
-    """Return the variants of the report's page."""
+    """Return the variants that the report page shows."""
     return [(name, cases.load_variant(find(name), of)) for name, of in REPORTED.items()]
 
 
 class Effects(Experiment):
-    """The effects of some variants: a pool leaves them out, and so compiles all kernels; steps are
-    timed in this process, one variant after the other."""
+    """The effects of some variants: the pool runs them, which also compiles all kernels; then this
+    process times the steps, one variant after the other."""
 
     def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
         """Return the rows of all effects of each point."""
         with alone():
-            left = self.missing()
-            runs = replace(self, points=left, folder=None).measured(pool)
-            rows = dict(zip(map(key, left), runs, strict=True))
+            missing = self.missing()
+            runs = replace(self, points=missing, folder=None).measured(pool)
+            rows = dict(zip(map(key, missing), runs, strict=True))
             costs = replace(self, measure=lambda point: timed(point, rows[key(point)]))
             return costs.measured(progress=progress)
 
 
 def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
-    """Return the study of all effects of some variants; results and files are in `folder`."""
+    """Return the study of all effects of some variants, with points and files in `folder`."""
     points = [
         (one, engine)
         for one in wanted
@@ -132,14 +132,14 @@ def experiment(title: str, wanted: list[Variant], folder: Path) -> Experiment:
         if engine == BLOCKS or applies(engine, one[1])
     ]
 
-    def told(rows: list[list[Row]]) -> Summary:
+    def summary(rows: list[list[Row]]) -> Summary:
         return summarise(folder, pd.DataFrame(chain(*rows), columns=COLUMNS))
 
-    return Effects(title, points, folder, key, measure, told, runs)
+    return Effects(title, points, folder, key, measure, summary, runs)
 
 
 def runs(points: Sequence[Point]) -> list[Run]:
-    """Return the runs of variants with all effects and without each, and those that are timed."""
+    """Return the runs of variants with all effects and without each, and their timed beginnings."""
     found, whole = [], {}
     for (name, scene), engine in points:
         for effect in (None, *active_effects(scene)):
@@ -160,7 +160,7 @@ def key(point: Point) -> str:
 
 
 def measure(point: Point) -> list[Row]:
-    """Return the rows of a variant in an engine, not yet timed; none for rock that cannot be run.
+    """Return the rows of a variant in an engine without timings; none for rock that cannot be run.
 
     Raises the errors of `solve` for rigid blocks, and SceneError for a scene without effects.
     """
@@ -189,7 +189,7 @@ def measure(point: Point) -> list[Row]:
 
 
 def timed(point: Point, rows: list[Row]) -> list[Row]:
-    """Return the rows of a variant in an engine with the cost of their effects."""
+    """Return the rows of a variant in an engine, with the timed cost of each effect."""
     (_, scene), engine = point
     if not rows:
         return []

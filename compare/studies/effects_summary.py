@@ -15,9 +15,9 @@ from jointwave.compare.studies.experiment import Summary
 from jointwave.compare.text import percent
 
 NAME, TITLE = "effects", "Cost and influence of each effect"
-LEAST_SHARE, LEAST_MISFIT = 0.5, 0.01  # %: smaller ones, and zero, are drawn here
+LEAST_SHARE, LEAST_MISFIT = 0.5, 0.01  # %: smaller values and zero are drawn here
 MARKERS = "osD^vP*X<>hpd8H"
-#: Safe for all kinds of colour blindness, by marker and colour in turn (Okabe & Ito 2008).
+#: Distinguishable with any colour blindness (Okabe & Ito 2008).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#000000")
 
 
@@ -35,8 +35,8 @@ def _labels(found: pd.DataFrame) -> pd.Series:
 
 
 def table(found: pd.DataFrame) -> pd.DataFrame:
-    """Return the effects of each scene and engine below the cost of a step, the most expensive
-    first."""
+    """Return the effects, most expensive first, under a heading for each scene and engine with the
+    cost of its step."""
     numbers = {label: i for i, label in enumerate(_labels(found).unique(), start=1)}
     rows: dict[tuple[str, str], dict[str, Any]] = {}
     for _, some in found.assign(label=_labels(found)).groupby(["label", "engine"], sort=False):
@@ -62,15 +62,15 @@ def table(found: pd.DataFrame) -> pd.DataFrame:
 
 
 def _resolved(value: float, noise: float) -> float | str:
-    """Return a number; in place of one that does not exceed the noise of timings, that."""
+    """Return a number, or "within ±NOISE" if it does not exceed the noise of the timings."""
     if abs(value) > noise or not isfinite(value):
         return value
     return f"within ±{float(f'{noise:.1g}'):g}"
 
 
 def sentences(found: pd.DataFrame) -> list[str]:
-    """Return the costs of the cheapest and the most expensive set of effects, and the most
-    expensive effect without influence."""
+    """Return as sentences the costs of the cheapest and the most expensive set of effects, and the
+    most expensive effect without influence."""
     blocks = found[found.engine == DEM.name].assign(label=_labels)
     sets = (blocks.own / blocks.everything).dropna().groupby(blocks.label).first().sort_values()
     said = []
@@ -91,10 +91,10 @@ def sentences(found: pd.DataFrame) -> list[str]:
 
 
 def draw(found: pd.DataFrame) -> Figure:
-    """Return the misfit over the cost of every effect in rigid blocks.
+    """Return the diagram of misfit over cost of every effect in rigid blocks.
 
-    Points have the number of their scene, and those at an edge lie there or beyond. The k-th effect
-    is the SVG group effects-points-k.
+    Points carry the number of their scene; values below the lower limits are drawn at the limits.
+    The k-th effect is the SVG group effects-points-k.
     """
     labels = _labels(found).unique().tolist()
     points = found[(found.engine == DEM.name) & (found.reason == "")].assign(label=_labels)

@@ -1,4 +1,4 @@
-"""The blocks, elements and steps that an engine can have on a scene, and their expected cost."""
+"""The choices of block size, elements and time step of an engine, with their expected cost."""
 
 from math import ceil
 from typing import Any, NamedTuple
@@ -18,27 +18,27 @@ from jointwave.compare.solvers.dem import DEM
 from jointwave.compare.solvers.record import Prepared
 from jointwave.compare.studies.store import FAILURES
 
-COARSEST = 0.9  # of the critical step, explicit
-#: Rigid blocks and, by their order, elements in the length of a rock mass's slowest waves, at the
-#: coarsest.
+COARSEST = 0.9  # largest explicit step over the critical step
+#: Fewest rigid blocks, and elements by order, per wavelength of a rock mass's slowest wave.
 BLOCKS_IN_WAVE, ELEMENTS_IN_WAVE = 6, {1: 20, 2: 6, 3: 3, 4: 2}
-#: Seconds of a step of a freedom, where no such run was timed yet: little, so that it is tried.
+#: Assumed seconds per step and freedom of runs never timed: small, so that they are tried.
 UNTIMED, UNTIMED_IMPLICIT = 1e-9, 5e-7
 EXPLICIT: dict[str, Any] = {"scheme": "explicit"}
-#: Without numerical damping: only the accuracy of the waveforms counts here.
+#: No numerical damping: only the accuracy of the waveforms counts here.
 IMPLICIT: dict[str, Any] = {"scheme": "implicit", "spectral_radius": 1.0}
-#: Least growth in degrees of freedom of elements of half the size: 5 / 3 along a block of one
-#: element of order 2, 25 / 9 in a quadrilateral. Blocks smaller than the elements do not grow.
+#: Least ratio of degrees of freedom that counts as refinement. Halving one element of order 2
+#: gives 5 / 3 along a block and 25 / 9 in a quadrilateral; blocks smaller than the elements gain
+#: none.
 GROWN = {"pillar": 1.5, "rock mass": 2.5}
-MOST_HALVINGS = 4  # of elements at once, until there are more of them
+MOST_HALVINGS = 4  # in one refinement, until the degrees of freedom grow
 HALF = {"elements_per_block": 2, "size": 0.5, "block": 0.5}  # factors for half the size
 
 
 class Elements(NamedTuple):
-    """An engine's blocks or elements and its scheme on a scene, with a step.
+    """An engine's blocks or elements, scheme and time step for a scene.
 
-    name : of the engine. changes : of its table in [numerics], without the step. run : as prepared,
-    with its freedoms and its critical step. per_sample : steps per sample, at first the fewest.
+    name : of the engine. changes : of its table in [numerics], without the step. run : the prepared
+    run, with freedoms and critical step. per_sample : time steps per sample.
     """
 
     scene: AnyScene
@@ -54,7 +54,7 @@ class Elements(NamedTuple):
 
     @property
     def model(self) -> dict[str, Any]:
-        """The changes that remain in the limit of fine steps and elements: the size of blocks."""
+        """The changes that alter the model, not only its discretisation: the size of blocks."""
         return {k: v for k, v in self.changes.items() if k == "block"}
 
     @property
@@ -69,15 +69,15 @@ class Elements(NamedTuple):
 
     @property
     def seconds(self) -> float:
-        """The expected seconds of stepping, by the rates of this machine."""
+        """The expected seconds of stepping, from rates measured on this machine."""
         steps = self.per_sample * (len(sample_times(self.scene)) - 1)
         known = timings.stepping(self.name, self.scene, self.run._replace(steps=steps))
         each = UNTIMED_IMPLICIT if self.run.scheme == "implicit" else UNTIMED
         return each * steps * self.run.freedoms if known is None else known
 
     def finer(self) -> "list[Elements]":
-        """Return elements, or blocks, of half the size or less; none where their mesh is given or
-        they cannot be had, for lack of memory."""
+        """Return elements, or blocks, of half the size or less; none if the mesh is given or they
+        cannot be prepared, e.g. for lack of memory."""
         changes = self.changes
         for _ in range(MOST_HALVINGS):
             if (changes := halved(changes)) == self.changes:
@@ -91,7 +91,7 @@ class Elements(NamedTuple):
         return []
 
     def solve(self) -> xr.Dataset:
-        """Return the result of its run, whose rate is kept for later estimates."""
+        """Return the result of its run; the measured rate is saved for later estimates."""
         result = solve(self.name, configured(self.scene, self.name, self.numerics))
         timings.note(self.name, self.scene, result.attrs)
         return result
@@ -104,18 +104,18 @@ def label(name: str, changes: dict[str, Any]) -> str:
 
 
 def elements(scene: AnyScene, name: str, changes: dict[str, Any]) -> Elements:
-    """Return an engine's elements on a scene with their longest step; raises SceneError if it
-    cannot have them."""
-    asked = configured(scene, name, changes)
-    if not (answer := applies(name, asked)):
+    """Return an engine's elements for a scene with their longest step; raises SceneError if the
+    engine cannot run them."""
+    trial = configured(scene, name, changes)
+    if not (answer := applies(name, trial)):
         raise SceneError(scene.where, "", None, answer.reason)
-    run = solver(name).prepare(asked)
+    run = solver(name).prepare(trial)
     longest = scene.interval if run.scheme == "implicit" else COARSEST * run.critical
     return Elements(scene, name, changes, run, ceil(scene.interval / longest * (1 - 1e-9)))
 
 
 def coarsest(scene: AnyScene) -> list[tuple[str, dict[str, Any]]]:
-    """Return the engines with their schemes and coarsest elements, as changes of [numerics]."""
+    """Return each engine with each scheme and its coarsest elements, as changes of [numerics]."""
     if scene.is_column:
         rigid: list[dict[str, Any]] = [{"scheme": scheme} for scheme in DEM.schemes]
     else:
@@ -136,22 +136,22 @@ def rock(scene: AnyScene, order: int) -> dict[str, Any]:
 
 
 def halved(changes: dict[str, Any]) -> dict[str, Any]:
-    """Return the changes for blocks or elements of half the size; the same if these are given."""
+    """Return the changes for blocks or elements of half the size; unchanged if they set no size."""
     return changes | {k: HALF[k] * v for k, v in changes.items() if k in HALF}
 
 
 def _part(scene: AnyScene, count: int) -> float:
-    """Return a part of the length of a rock mass's slowest waves of the shortest period, m."""
+    """Return the shortest wavelength in a rock mass divided by `count`, m."""
     return float(f"{slowest(scene) * period_of(scene) / count:.3g}")  # type: ignore[arg-type]
 
 
 def period_of(scene: AnyScene) -> float:
-    """Return the shortest period of a scene's pulses, s; without one a tenth of its duration."""
+    """Return the shortest period of a scene's pulses, s; without pulses a tenth of its duration."""
     return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def plain(scene: AnyScene) -> AnyScene:
-    """Return a scene with default numerics, without ledger and snapshots."""
+    """Return a scene with default numerics, without energy ledger and snapshots."""
     record = scene.record.model_copy(
         update={"interval": scene.interval, "energy": False, "fields": None}
     )
@@ -160,8 +160,8 @@ def plain(scene: AnyScene) -> AnyScene:
 
 
 def configured(scene: AnyScene, name: str, changes: dict[str, Any]) -> AnyScene:
-    """Return a scene with changes of an engine's numerics, which are otherwise its own; raises
-    SceneError if it cannot have them."""
+    """Return a scene, without energy ledger and snapshots, with changes of an engine's numerics;
+    raises SceneError if they are invalid."""
     key = ENGINES[name].engine
     table = getattr(scene.numerics, key).model_copy(update=changes)
     numerics = scene.numerics.model_copy(update={key: table})

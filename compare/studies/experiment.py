@@ -1,4 +1,4 @@
-"""A study: a grid of points, the row of readings of each, and their summary.
+"""A study: points, the rows measured at each, and their summary.
 
 A point is saved as a JSON file whose name is a hash of everything that determines its rows,
 including the program. An interrupted study thus resumes, and a changed one starts afresh.
@@ -24,12 +24,12 @@ from jointwave.compare.studies.store import DIED, Pool, alone, in_processes
 class Summary(NamedTuple):
     """A study's summary for display.
 
-    name : of its files, and of its section of the page. table : its numbers in display units, with
-    a heading of groups and the label of a row as the levels of its index. sentences : its findings.
-    failed : a line for each row that failed. data : its rows and other numbers, machine-readable,
-    see `facts`. note : about all of it.
-    legend : of the table. about : for the caption of the figure: its contents, the quantity of its
-    misfits, or its scenes. timed : whether it has seconds.
+    name : of its files, and of its section of the page. table : its numbers in display units; the
+    index levels are the heading of a group and the label of a row. sentences : its findings.
+    failed : a line for each failed row. data : its rows and other numbers, machine-readable, see
+    `facts`. note : a remark on the whole study. legend : of the table. about : for the caption of
+    the figure: its contents, the quantity of its misfits, or its scenes. timed : whether it has
+    seconds.
     """
 
     name: str
@@ -53,14 +53,14 @@ class Summary(NamedTuple):
 
 @dataclass(frozen=True)
 class Experiment:
-    """A study: each of its points is measured once and saved, and the rows of all summarised.
+    """A study: each point is measured once and saved; then all rows are summarised.
 
     folder : of the saved rows; None: nothing is saved. key : returns the name of a point. measure :
-    returns the row of a point, or several. summarise : writes the files of all rows. runs : returns
-    the solutions that some points need. timed : only one such study runs on a machine at a time.
-    shares : whether several processes may share the points. is_valid : whether saved rows are still
-    valid. fresh : take none. lost : returns the rows, not saved, of a point whose process has died;
-    None: MemoryError is raised.
+    returns the row or rows of a point. summarise : writes the files and returns the summary. runs :
+    returns the runs that some points need. timed : only one timed study runs on a machine at a
+    time. shares : whether several processes may share the points. is_valid : whether saved rows are
+    still valid. fresh : ignore saved rows. lost : returns the rows (not saved) of a point whose
+    process has died; None: MemoryError is raised.
     """
 
     title: str
@@ -85,12 +85,12 @@ class Experiment:
         return self.summarise(self.rows(pool, progress))
 
     def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
-        """Return the rows of all points, in their order."""
+        """Return the rows of all points, in order; wait for other timed studies if timed."""
         with alone() if self.timed else nullcontext():
             return self.measured(pool if self.shares else None, progress)
 
     def measured(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
-        """Return the rows of all points; saved ones are not measured again.
+        """Return the rows of all points; saved points are not measured again.
 
         pool : does the work; None: this process, one point after the other. Raises SceneError if a
         saved file is damaged.
@@ -115,7 +115,7 @@ class Experiment:
         return [point for point in self.points if self._saved(self.key(point)) is None]
 
     def _saved(self, name: str) -> Any:
-        """Return saved rows; None without any, or if they are no longer valid."""
+        """Return the saved rows of a point; None if there are none, or if they are invalid."""
         path = self.folder and self.folder / f"{name}.json"
         if self.fresh or path is None or not path.is_file():
             return None

@@ -1,7 +1,7 @@
-"""The findings of a study: errors that count, orders of convergence, and results in sentences.
+"""The findings of a study: ranked errors, orders of convergence, and results in sentences.
 
-A point counts with the largest error of itself and of all finer points of its curve: accuracy lost
-in a finer step was luck.
+A point is ranked by the largest error among itself and all finer points of its curve: an error that
+grows again with refinement was small by chance.
 """
 
 from collections.abc import Sequence
@@ -18,16 +18,16 @@ from jointwave.compare.studies.study import Curve, FineRun, Study
 from jointwave.compare.text import in_seconds, percent
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4)
-CLEARLY = 0.9  # of the expected error: a smaller one is due to cancellation
+CLEARLY = 0.9  # of the expected error; a smaller error is due to cancellation
 ROUND_OFF = 1e-11  # below, an error no longer falls
-KNOWN = 10  # least ratio of an error to its floor for an order accurate to some per cent
+KNOWN = 10  # least ratio of error to floor that gives the order to some per cent
 
 
 def judged(rows: Sequence[Row]) -> pd.DataFrame:
-    """Return the table of a study, a row a point in its order, SI.
+    """Return the table of a study: one row per point, in order, SI.
 
-    Beside the columns of `measure`: held, the error that counts, of the sum or, where that is
-    unknown, the numerical one; cancels, whether the point measures less than that.
+    It adds two columns to those of `measure`: held, the error by which the point is ranked (the
+    total, or if unknown the numerical error); cancels, whether its own error is clearly smaller.
     """
     numbers = dict.fromkeys((*ERRORS, *COUNTS), float)
     table = pd.DataFrame(rows, columns=[*WORDS, *numbers]).astype(numbers)
@@ -39,9 +39,9 @@ def judged(rows: Sequence[Row]) -> pd.DataFrame:
 
 
 def _held(table: pd.DataFrame, error: str) -> pd.Series:
-    """Return the largest error of each point and of all finer ones of its curve, with the same
-    physics; nan where a point has no error. Finer has more work or, if not counted, stands later.
-    """
+    """Return for each point the largest error among itself and all finer points of its curve with
+    the same physics; nan for a point without error. A finer point has more work or, if work is not
+    counted, a later row."""
     free = ("pillar.block", "numerics.")  # these do not change the problem
     physics = table["settings"].map(
         lambda of: repr(sorted((k, v) for k, v in of.items() if not k.startswith(free)))
@@ -53,21 +53,21 @@ def _held(table: pd.DataFrame, error: str) -> pd.Series:
 
 
 def done(table: pd.DataFrame, error: str, cost: str) -> pd.DataFrame:
-    """Return the points that were done and have both numbers."""
+    """Return the completed points with positive error and cost."""
     return table[(table["state"] == "done") & (table[error] > 0) & (table[cost] > 0)]
 
 
 def cheapest(table: pd.DataFrame, target: float) -> pd.DataFrame:
-    """Return the cheapest point of each curve within a misfit, the cheapest of all first; none if
-    their reference is not known to a tenth of it."""
+    """Return the cheapest point of each curve within a misfit, sorted by cost; only points whose
+    references are known to a tenth of the misfit."""
     points = done(table, "total", "seconds").sort_values("seconds")
     within = (points["held"] <= target) & (JUDGED * points["total_floor"] <= target)
     return points[within].drop_duplicates("curve")
 
 
 def floor(table: pd.DataFrame, error: str) -> float:
-    """Return the error below which errors are not known; 0 against exact solutions. For totals it
-    is that of the finest physics, without that of each curve's own model."""
+    """Return the error of the references, below which errors are not known; 0 for exact solutions.
+    For totals: the error of the finest physics only, without that of the curves' own models."""
     largest = table[f"{error}_floor"].max()
     if error == "total":
         largest = (table["total_floor"] - table["numerical_floor"]).max() or largest
@@ -75,8 +75,8 @@ def floor(table: pd.DataFrame, error: str) -> float:
 
 
 class Order(NamedTuple):
-    """The order measured along one curve, that between its two finest points, with the varied key
-    or its inverse; and the theoretical one."""
+    """The order of convergence of a curve in its varied key, or in its inverse: measured between
+    its two finest points, and in theory."""
 
     curve: str
     key: str
@@ -97,7 +97,7 @@ def _order(curve: Curve, table: pd.DataFrame) -> Order | None:
     (key,) = numeric
     least = (KNOWN * table["numerical_floor"].fillna(0.0)).clip(lower=ROUND_OFF)
     known = table[(table["state"] == "done") & (table["numerical"] > least)]
-    # The actual step if a key of steps is varied: two fractions may be one step.
+    # Use the actual step if a step key is varied: two fractions may give the same step.
     size = known["dt"] if "step" in key else known["settings"].map(lambda s: float(s[key]))
     points = known.assign(size=size).drop_duplicates("size", keep="last")
     finest = np.log(points.nsmallest(2, "numerical")[["numerical", "size"]]).diff().abs().iloc[1:]
@@ -106,9 +106,9 @@ def _order(curve: Curve, table: pd.DataFrame) -> Order | None:
 
 
 def sentences(study: Study, table: pd.DataFrame) -> list[str]:
-    """Return the findings of a study: the measured orders; of a timed one the cheapest point within
-    each misfit, and the extra cost of the next best curve; and the accuracy of the finest physics,
-    if it is a fine run."""
+    """Return the findings of a study: measured orders and the number of failures; for a timed study
+    also the cheapest point within each misfit, the cost of the next best curve and, if the finest
+    physics is a fine run, its accuracy."""
     found: list[str] = []
     if study.timed and table["total"].notna().any():
         found += filter(None, (_cheapest(table, target) for target in TARGETS))

@@ -1,7 +1,7 @@
 """Fit keys of a scene to measured waveforms by nonlinear least squares.
 
-lmfit searches and gives the Jacobian at the best fit, from which standard errors and correlations
-follow; the 95 % interval is that of Student's t. Positive keys are searched on a logarithmic scale.
+lmfit searches and returns the Jacobian at the best fit, which gives standard errors and
+correlations; 95 % intervals use Student's t. Positive keys are searched on a logarithmic scale.
 """
 
 from collections.abc import Iterable, Sequence
@@ -28,14 +28,14 @@ from jointwave.compare.studies.elements import period_of
 from jointwave.compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed, free_keys
 from jointwave.compare.studies.forecast import Run
 
-STEPS = 6  # of a search that converges, usually
-SHORT = 200  # blocks, up to which matrix exponentials are cheap
+STEPS = 6  # usual number of steps of a search that converges
+SHORT = 200  # blocks up to which matrix exponentials are cheap
 POOR = 0.2  # misfit above which another start may fit better
-NEAR = 1e-6  # of an unknown to its bound
+NEAR = 1e-6  # distance of an unknown from a bound that counts as at the bound
 ALIKE = 0.99  # correlation above which two keys are indistinguishable
-LOST = 3e4  # times the error of a key fitted alone: derivatives by differences tell no more
+LOST = 3e4  # error of a key over its error if fitted alone, above which it is not determined
 FINER = 4  # samples of the solution per sample of the scene, if the clock is free
-EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # of an unknown, for differences
+EXACT_STEP, COMPUTED_STEP = 1e-4, 1e-3  # difference step of an unknown
 LEAST_SAMPLES = 10  # of a waveform
 TOLERANCE = 1e-12  # of the squares, the unknowns and the gradient
 MOST = 60  # steps of a search, each with its derivatives
@@ -45,12 +45,12 @@ MOST = 60  # steps of a search, each with its derivatives
 class Fit:
     """The result of a fit.
 
-    scene : with the fitted keys, else as given. solver : the engine or exact solution.
-    values : a row per key: its value, its standard error, `low` and `high`, its 95 % interval
-    (infinite if the waveforms do not bound it), its `start`, all SI, and whether it is `at_bound`.
-    correlation : of the keys. waveforms : a row per measured waveform: its file's `name`, its
-    `place`, and the relative L2 misfit of the motion `before` and `after`. trials : number of
-    solutions of the scene. notes : warnings, one sentence each.
+    scene : the given one with the fitted keys. solver : the engine or exact solution. values : a
+    row per key: its `value`, standard `error`, 95 % interval `low` to `high` (infinite if the
+    waveforms do not bound it) and `start`, all SI, and whether it is `at_bound`. correlation : of
+    the keys. waveforms : a row per measured waveform: `name` of the file, `place`, and relative L2
+    misfit `before` and `after` the fit. trials : number of solutions of the scene. notes :
+    warnings, one sentence each.
     """
 
     scene: AnyScene
@@ -81,12 +81,11 @@ def fit(
 ) -> Fit:
     """Fit keys of a scene to measured waveforms by least squares, with confidence intervals.
 
-    curves : from `read_curves`. free : dotted keys, KEY, KEY=START or
-    KEY=LOW:START:HIGH, and `clock`, a shift added to the times of all files, s. solver : an engine
-    or exact solution; None: the exact chain of rigid blocks if it applies and is short, else
-    `dem`. Each waveform has the same weight, relative to its size; amplitudes are not scaled.
-    Intervals are of 95 %, linearised at the best fit, and valid if the model is correct and
-    residuals independent.
+    curves : from `read_curves`. free : dotted keys, KEY, KEY=START or KEY=LOW:START:HIGH, and
+    `clock`, a shift added to the times of all files, s. solver : an engine or exact solution; None:
+    the exact chain of rigid blocks if it applies and is short, else `dem`. All waveforms weigh the
+    same, each relative to its size; amplitudes are not scaled. The 95 % intervals are linearised at
+    the best fit, and valid if the model is correct and residuals are independent.
 
     Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
     converge.
@@ -96,7 +95,7 @@ def fit(
         raise SceneError(scene.where, "", None, "a fit needs a curve of this scene and a free key")
     for one in curves:
         require(one, Curves, "fit", "curves", READ_CURVES)
-    keys, first, name = _asked(scene, [free] if isinstance(free, str) else free, solver)
+    keys, first, name = _start(scene, [free] if isinstance(free, str) else free, solver)
     trials = _Trials(first, name, curves, keys, progress)
     before = trials.residuals(key.unknown(key.start) for key in trials.keys)
     best = trials.search()
@@ -115,17 +114,16 @@ def fit(
 
 
 def planned(scene: AnyScene, free: Sequence[str], solver: str | None = None) -> Run:
-    """Return the runs of a fit: usually some `STEPS` of its search, with derivatives of each key
-    from both sides."""
-    keys, first, name = _asked(scene, free, solver)
+    """Return the expected runs of a fit: `STEPS` steps, each with central differences per key."""
+    keys, first, name = _start(scene, free, solver)
     return Run("", first, name, 2 + STEPS * (2 * len(keys) + 1))
 
 
-def _asked(
+def _start(
     scene: AnyScene, free: Sequence[str], solver: str | None
 ) -> tuple[list[FreeKey], AnyScene, str]:
-    """Return the keys, the scene with their starts, and the solver of every trial; raises
-    SceneError if it does not apply."""
+    """Return the keys, the scene with their starting values, and the name of the solver; raises
+    SceneError if the solver does not apply."""
     keys = free_keys(list(free), scene)
     first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
     short = first.is_column and first.block_count <= SHORT and row_of_blocks.applies(first)
@@ -136,10 +134,11 @@ def _asked(
 
 
 class _Trials:
-    """Solutions of a scene for values of its free keys, beside the measured waveforms.
+    """Solutions of a scene for values of its free keys, compared with the measured waveforms.
 
     scene : with the sampling and duration that the fit needs. names, places : of the waveforms.
-    count : of the solutions tried. Raises SceneError if a curve shares too few samples.
+    count : of the solutions tried. Raises SceneError if a curve has too few samples within the
+    scene's duration, or no waveform at its receivers.
     """
 
     def __init__(
@@ -197,17 +196,17 @@ class _Trials:
         return found if found.success else None
 
     def _all_residuals(self, unknowns: Parameters) -> np.ndarray:
-        """Return all residuals in one; infinite without a solution, so that the search takes its
-        step back."""
+        """Return all residuals as one array; infinite if there is no solution, so that the search
+        takes a shorter step."""
         try:
             return np.concatenate(self.residuals(unknowns.valuesdict().values()))
         except (SceneError, UnstableError):
             return np.full(sum(map(len, self._times)), inf)
 
     def residuals(self, x: Iterable[float]) -> list[np.ndarray]:
-        """Return solution minus measurement [n] of each waveform, whose norm is its relative L2
-        misfit, for the search variables [p]; raises SceneError or UnstableError if there is no
-        solution."""
+        """Return the residuals [n] of each waveform for the search variables [p]: solution minus
+        measurement, scaled so that their norm is the relative L2 misfit. Raises SceneError or
+        UnstableError if there is no solution."""
         self.count += 1
         if self.progress:
             self.progress(1 - 0.97**self.count)  # the number of trials is unknown
@@ -225,8 +224,8 @@ class _Trials:
 
 
 def _clock(clock: FreeKey, scene: AnyScene, solver: str, curve: Curves) -> FreeKey:
-    """Return the clock with its start, unless given the shift with the best correlation of a file
-    to the solution, and with bounds a period of the load away at most."""
+    """Return the clock with its start (if not given, the shift that best correlates a file with the
+    solution) and bounds at most one period of the load away."""
     start, reach = clock.start, period_of(scene)
     if isnan(start):
         found = align_curve(curve, scene, {solver: solve(solver, scene)}, align=True).shift
@@ -238,8 +237,8 @@ def _clock(clock: FreeKey, scene: AnyScene, solver: str, curve: Curves) -> FreeK
 def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the values of a fit and the correlations of its keys, from lmfit's result.
 
-    The covariance of the unknowns is (J^T J)^-1 times the reduced chi-square; an error is infinite
-    where waveforms do not change with an unknown, or with a combination that has it.
+    The covariance of the unknowns is (J^T J)^-1 times the reduced chi-square. The error of a key is
+    infinite if waveforms do not depend on it or on a combination of keys that contains it.
     """
     names = pd.Index([key.key for key in keys], name="key")
     size = np.linalg.norm(best.jac, axis=0)
@@ -256,8 +255,8 @@ def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFra
 
 
 def _row(key: FreeKey, x: float, error: float, half: float) -> dict[str, Any]:
-    """Return the value of a key, its error and its interval from those of its unknown; infinite
-    where half of it is more than all that its bounds allow."""
+    """Return the row of a key from its unknown `x`, the standard error and the half interval of x;
+    both infinite if the half interval exceeds the distance between the bounds."""
     value = key.value(x)
     if half > key.unknown(key.high) - key.unknown(key.low):
         error = inf
@@ -277,7 +276,7 @@ def _row(key: FreeKey, x: float, error: float, half: float) -> dict[str, Any]:
 
 
 def _notes(values: pd.DataFrame, correlation: pd.DataFrame, misfit: float) -> list[str]:
-    """Return warnings about the values, in sentences."""
+    """Return warnings about the fitted values, in sentences."""
     found = [
         f"{key} stopped at its bound, {value:.6g}: its interval is not valid"
         for key, value in values.value[values.at_bound].items()

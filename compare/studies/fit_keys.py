@@ -16,10 +16,10 @@ from jointwave.cases.units import units_of
 from jointwave.cases.validate import checked
 
 CLOCK = "clock"  # shift added to the times of the files, s
-FACTOR = 1000.0  # by which a positive key may change, if nothing else bounds it
-#: Of an unknown at the start: scipy's difference steps are a fraction of the unknown.
+FACTOR = 1000.0  # largest change of a positive key without bounds of its own
+#: Value of every unknown at the start, not 0: scipy's difference steps are a fraction of it.
 ORIGIN = 10.0
-#: Keys of discretisation, solution and recording: not continuous parameters.
+#: Keys of geometry, discretisation and recording, which are not continuous parameters.
 FIXED = (
     *("pillar.length", "pillar.block", "soft_layers.*.y", "time.*", "record.*", "numerics.*"),
     *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
@@ -30,7 +30,7 @@ FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH, of numbers, LOW first"
 
 
 class FreeKey(NamedTuple):
-    """A key that is fitted, between two bounds; start : nan if it is to be found (clock only)."""
+    """A key that is fitted, with its bounds; start : nan if it is to be found (clock only)."""
 
     key: str
     start: float
@@ -44,7 +44,7 @@ class FreeKey(NamedTuple):
 
     @property
     def size(self) -> float:
-        """The change of the value for a change of 1 in the unknown, on a linear scale."""
+        """The change of the value per unit of the unknown, on a linear scale."""
         reach = self.high - self.low
         return reach if self.key == CLOCK else abs(self.start) or (reach if isfinite(reach) else 1)
 
@@ -61,7 +61,7 @@ class FreeKey(NamedTuple):
 
 
 def free_keys(texts: list[str], scene: AnyScene) -> list[FreeKey]:
-    """Return the keys of `--free`, several in one text separated by commas; raises SceneError."""
+    """Return the keys of `--free`, separated by commas within a text; raises SceneError."""
     found: dict[str, FreeKey] = {}
     for text in ",".join(texts).split(","):
         one = _free_key(text, scene)
@@ -71,7 +71,7 @@ def free_keys(texts: list[str], scene: AnyScene) -> list[FreeKey]:
 
 
 def _free_key(text: str, scene: AnyScene) -> FreeKey:
-    """Return a key with its start and bounds: as given, else from the scene and its models."""
+    """Return a key with its start and bounds, as given or else from the scene and its schema."""
     key, equals, numbers = (part.strip() for part in text.partition("="))
     try:
         given = [float(part) for part in numbers.split(":")] if equals else []
@@ -93,8 +93,8 @@ def _free_key(text: str, scene: AnyScene) -> FreeKey:
 
 
 def _held(key: str, scene: AnyScene) -> tuple[str, Any]:
-    """Return a dotted key's allowed values in words and its value, None if the scene leaves it
-    out. The first table of a list stands for all of them where a key is without its number."""
+    """Return the allowed values of a dotted key in words, and its value, None if not set; raises
+    SceneError for keys that are not continuous numbers, or lack the number of a table in a list."""
 
     def numbered(name: str) -> str:
         first, dot, rest = name.partition(".")
@@ -120,7 +120,7 @@ def _part(table: Any, name: str) -> Any:
 
 
 def unit_of(key: str, scene: AnyScene) -> str:
-    """Return the SI unit of a key of `--free`, with which its comment begins; "" without one."""
+    """Return the SI unit of a key of `--free`, read from the start of its comment; "" if none."""
     *tables, name = key.split(".")
     table: Any = reduce(_part, tables, scene)
     if name == "amplitude":
@@ -151,7 +151,7 @@ def _with(table: Any, parts: list[str], value: float, context: dict[str, int]) -
         inner = _with(getattr(table, parts[0]), parts[1:], value, context)
         return table.model_copy(update={parts[0]: inner})
     new = table.model_copy(update={parts[0]: value})
-    # A load retains the history that it has read.
+    # A load with a file keeps the history that it has read.
     if getattr(new, "file", None):
         return new
     return type(new).model_validate(dict(new), context=context)

@@ -1,4 +1,4 @@
-"""The steps, size, seconds and memory of runs before they start."""
+"""Estimates of steps, size, seconds and memory of runs before they start."""
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -18,15 +18,15 @@ from jointwave.compare.studies.measure import LONG
 from jointwave.compare.studies.step_cost import shortened
 from jointwave.compare.studies.store import Row
 
-ENOUGH = 10_000_000  # steps of one block or freedom, in which the start of a run costs little
+ENOUGH = 10_000_000  # steps times blocks or freedoms, for which starting a run costs little
 
 
 class Run(NamedTuple):
     """A solution that a command would compute.
 
-    point : of a sweep, or the part of a study or page, "" without. times : how often. again : how
-    often more where its steps take so little time that they are timed anew. is_read : whether an
-    earlier result is read instead. for_paraview : whether snapshots become files of their own.
+    point : of a sweep, or the part of a study or page; "" if none. times : number of repetitions.
+    again : additional repetitions if the run is so short that its timing is repeated. is_read :
+    whether a saved result is read instead. for_paraview : whether snapshots become files.
     """
 
     point: str
@@ -41,15 +41,15 @@ class Run(NamedTuple):
 def runs_of(
     names: Iterable[str], scene: AnyScene, stored: ResultFolder, suffix: str = "", point: str = ""
 ) -> list[Run]:
-    """Return the runs of `ResultFolder.solve`, of the solvers that apply."""
+    """Return the runs of the solvers that apply; results in the folder `stored` are read."""
     able = [name for name in names if applies(name, scene)]
     return [Run(point, scene, name, is_read=stored.has(name, scene, suffix)) for name in able]
 
 
-#: Columns of an estimate. steps : of time, exactly; 0 for exact solutions. size : blocks or
-#: freedoms, in words. stepping : seconds of it, at the rate last measured here; None if never
-#: measured. setup : seconds before the first step. seconds : of all its `times`, with snapshots.
-#: bytes : of memory, as the run itself estimates it at its start; for exact solutions that of their
+#: Columns of an estimate. steps : exact number of time steps; 0 for exact solutions. size : blocks
+#: or freedoms, in words. stepping : seconds, from the rate last measured on this machine; None if
+#: never measured. setup : seconds before the first step. seconds : of all repetitions, with
+#: snapshots. bytes : of memory, the run's own estimate; for exact solutions the memory of their
 #: waveforms, a lower bound.
 COLUMNS = (
     *("point", "variant", "engine", "scheme", "steps", "size"),
@@ -84,11 +84,10 @@ def forecast(run: Run) -> Row:
 def forecasts(
     wanted: Sequence[Run], progress: Progress = lambda fraction: None, spare: float = 0.0
 ) -> tuple[pd.DataFrame, dict[str, str]]:
-    """Return the table of estimates of what is not read, a row each, and why points would
-    fail.
+    """Return the estimates of all runs that are not read, a row each, and why points would fail.
 
-    spare : seconds of CPU time, within which the first steps of kinds of runs that were never timed
-    on this machine are run. Raises SceneError for a run that is not possible and has no point.
+    spare : CPU seconds that may be spent on first steps of runs whose kind was never timed on this
+    machine. Raises SceneError for an impossible run without a point.
     """
     found: list[Row] = []
     failing, kinds, began = {}, set(), process_time()
@@ -115,9 +114,9 @@ def forecasts(
 
 
 def _time(run: Run) -> None:
-    """Run the beginning of a scene and note what it costs, if it is stable; the first run compiles.
+    """Run the beginning of a scene and save its cost, if it is stable; the first run compiles.
 
-    What precedes the first step is that of the whole scene.
+    The set-up time is that of the whole scene.
     """
     short = shortened(run.scene, run.name, ENOUGH)
     with suppress(UnstableError):

@@ -1,16 +1,16 @@
-"""The study of hard cases: the scenes of cases/hard on every engine by every scheme of time steps.
+"""The study of hard cases: every scene of cases/hard on every engine with every time integrator.
 
-A run holds if it ends as it should, its energy ledger closes, what it dissipates never returns, and
-it is no further from the exact solution than its scene expects.
+A run passes if it ends as it should, its energy ledger closes, its dissipated energy never falls,
+and its misfit from the exact solution is within the bound of its scene.
 
-Energy: leapfrog conserves its ledger where joints are linear, to LINEAR; else, where a joint opens
-within a step the trapezoid of its force is off by K (v dt)^2 / 8 at most, at a twentieth of the
-critical step 3e-4 of m v^2 / 2, OPENING; implicit steps damp on purpose, so that only their
-dissipation is bounded. Dissipated energy falls by round-off of each step, STEP times their number.
-Misfit: what [expect] allows is for explicit steps; an implicit one has a relative error of the
-frequency (omega dt)^2 / 6 more, the phase (omega dt)^2 omega t / 6 at the end of a run, averaged
-over the spectrum of a Ricker wavelet (CUBES). Steps above the critical one are refused, and stopped
-by the divergence monitor if the scene allows them.
+Energy: with linear joints leapfrog conserves the ledger to LINEAR. If a joint opens within a step,
+the trapezoidal work of its force is wrong by at most K (v dt)^2 / 8: at a twentieth of the critical
+step 3e-4 of m v^2 / 2, hence OPENING. Implicit steps damp on purpose, so only their dissipation is
+bounded. Dissipated energy may fall by round-off, STEP times the number of steps.
+Misfit: the bounds of [expect] are for explicit steps. Implicit steps add a relative frequency error
+(omega dt)^2 / 6, i.e. a phase error (omega dt)^2 omega t / 6 at the end of a run, averaged over the
+spectrum of a Ricker wavelet (CUBES). Steps above the critical one are refused or, if the scene
+allows them, stopped by the divergence monitor.
 """
 
 from collections.abc import Sequence
@@ -49,35 +49,34 @@ NOTE = (
     "of what it has dissipated, over the work, its misfit, and the least bound over its value."
 )
 STABLE, REFUSED, STOPPED, NONE = "stable", "refused", "stopped", "does not apply"
-LINEAR, OPENING, STEP = 1e-10, 1e-3, 1e-15  # bounds on energy, of the work
-CUBES = 2.22  # root mean square of f^3 over the spectrum f^2 exp(-f^2) with its peak at f = 1
+LINEAR, OPENING, STEP = 1e-10, 1e-3, 1e-15  # bounds on energy, over the work
+CUBES = 2.22  # root mean square of f^3 over the spectrum f^2 exp(-f^2), whose peak is at f = 1
 NONLINEAR = {"slip", "softening", "no tension", "closure"}
 SPENT = ("viscous", "friction", "fracture")
-#: A blow in which all modes of the pillar ring, at steps above the critical one.
+#: A short blow that excites all modes of the pillar, for steps above the critical one.
 RINGING = {"load.period": 1e-3, "time.duration": 2.0, "record.interval": 1.0}
 FRACTION = 1.001  # of the critical step
 ABOVE_CRITICAL = f"{FRACTION:g} of the critical step"
 
 
 #: Columns of a case: its scene, variant, engine, scheme, and how its run should end; how and why it
-#: has ended; over the work the imbalance of the ledger of energy and the largest fall of what was
-#: dissipated, the misfit from `reference`, and their bounds. What is not judged is missing.
+#: ended; over the work: the imbalance of the energy ledger and the largest fall of dissipated
+#: energy; the misfit from `reference`; the bounds of these. What is not checked is missing.
 POINT = ("scene", "variant", "engine", "scheme", "should")
 NUMBERS = ("energy", "energy_bound", "fall", "fall_bound", "misfit", "misfit_bound")
 COLUMNS = (*POINT, "ended", *NUMBERS, "reference", "message")
 
 
 def title_of(row: Row) -> str:
-    """Return the scene of a case, its variant and step, as the table has them."""
+    """Return the title of a case in the table: its scene, variant and step."""
     steps = {REFUSED: ABOVE_CRITICAL, STOPPED: f"{ABOVE_CRITICAL}, allowed"}
     parts = row["scene"].partition("/")[2], row["variant"], steps.get(row["should"])
     return ", ".join(filter(None, parts))
 
 
 def judged(rows: Sequence[Row]) -> pd.DataFrame:
-    """Return the table of all cases, with their `title` and `name`; the `margin`, the least bound
-    over its value, infinite without bounds, nan if a value is; and whether a case `holds`: it has
-    ended as it should, within all bounds."""
+    """Return the table of all cases with `title`, `name`, `margin` (the least bound / value, inf
+    without bounds, nan if a value is nan) and `holds`: ended as it should, within all bounds."""
     found = pd.DataFrame(rows, columns=COLUMNS).astype(dict.fromkeys(NUMBERS, float))
     texts = found[["reference", "message"]].fillna("")
     values, bounds = found[[*NUMBERS[::2]]].to_numpy(), found[[*NUMBERS[1::2]]].to_numpy()
@@ -91,8 +90,8 @@ def judged(rows: Sequence[Row]) -> pd.DataFrame:
 
 
 def hard_cases() -> list[Row]:
-    """Return every case before its run: each variant of each scene of cases/hard, and steps above
-    the critical one."""
+    """Return all cases, not yet run: each variant of each scene of cases/hard, and runs with steps
+    above the critical one."""
     found = [
         (name, scene.name, engine.name, scheme)
         for name in shipped()
@@ -109,7 +108,7 @@ def hard_cases() -> list[Row]:
 
 
 def scene_of(row: Row) -> AnyScene:
-    """Return the scene that is run."""
+    """Return the scene of a case; raises SceneError if it is invalid."""
     table = f"numerics.{ENGINES[row['engine']].engine}"
     changes: dict[str, Any] = {}
     if row["scheme"] != "leapfrog":  # the only one of rigid blocks in the plane
@@ -121,7 +120,7 @@ def scene_of(row: Row) -> AnyScene:
 
 
 def run(row: Row) -> Row:
-    """Return a case after its run; all errors of a run are states of it."""
+    """Run a case and return it with its results; errors of a run become its state `ended`."""
     try:
         scene = scene_of(row)
         if reason := applies(row["engine"], scene).reason:
@@ -163,8 +162,8 @@ def _of_misfit(row: Row, scene: AnyScene, result: xr.Dataset) -> dict[str, Any]:
 def largest_fall(result: xr.Dataset) -> float:
     """Return the largest decrease of dissipated energy over the largest work.
 
-    The viscous term alone may fall: where a joint slides, a dashpot whose spring unloads pushes the
-    slide on, at the cost of friction.
+    The viscous term alone may fall: at a sliding joint, a dashpot whose spring unloads drives the
+    slip, which friction then dissipates.
     """
     work = float(np.abs(result.energy.sel(term="work")).max())
     spent = {t: result.energy.sel(term=t).values for t in SPENT if t in result.term.values}
@@ -178,12 +177,12 @@ def experiment(out: Path) -> Experiment:
 
     A point is a case or, with a `ratio`, a column of a map.
     """
-    points, told = [*hard_map.columns(), *hard_cases()], partial(summarise, out)
-    return Experiment(TITLE, points, out / NAME, key, measure, told, runs)
+    points, summary = [*hard_map.columns(), *hard_cases()], partial(summarise, out)
+    return Experiment(TITLE, points, out / NAME, key, measure, summary, runs)
 
 
 def key(point: Row) -> str:
-    """Return the key of a point: everything that determines it."""
+    """Return the key of a point, a hash of everything that determines its row."""
     if "ratio" in point:
         return store.key(point)
     scene = cases.load_variant(find(point["scene"]), point["variant"])
@@ -191,13 +190,13 @@ def key(point: Row) -> str:
 
 
 def measure(point: Row) -> Row:
-    """Return a case after its run, or a column of a map with its cells."""
+    """Return a case with its results, or a column of a map with its cells."""
     return hard_map.computed(point) if "ratio" in point else run(point)
 
 
 def runs(points: Sequence[Row]) -> list[Run]:
-    """Return the runs of cases, with what they are held against, and of maps' cells; a cell above
-    the critical step ends early."""
+    """Return the runs of cases and of their exact solutions, and those of the stable cells of maps;
+    unstable cells end early."""
     found = [Run("maps", *hard_map.cells_to_run(one)) for one in points if "ratio" in one]
     for row in (one for one in points if "ratio" not in one):
         with suppress(SceneError):
@@ -211,7 +210,7 @@ def runs(points: Sequence[Row]) -> list[Run]:
 
 
 def summarise(out: Path, found: Sequence[Row]) -> Summary:
-    """Return the summary of maps and cases; write their tables and figure into `out`."""
+    """Return the summary of maps and cases; write their tables and the figure into `out`."""
     cells = hard_map.cells_of([one for one in found if "ratio" in one])
     rows = judged([one for one in found if "ratio" not in one])
     drawn = save(hard_map.draw_maps(cells), out, NAME, TITLE)
@@ -237,10 +236,10 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
 
 def sentences(rows: pd.DataFrame, cells: pd.DataFrame) -> list[str]:
     """Return the number of cases that hold, the least margin, and cells that contradict theory."""
-    asked = rows[rows.ended != NONE]
-    held = asked[asked.holds].sort_values("margin", kind="stable")
+    tried = rows[rows.ended != NONE]
+    held = tried[tried.holds].sort_values("margin", kind="stable")
     found = [
-        f"{len(held)} of {len(asked)} rows hold; {len(rows) - len(asked)} do not apply, each with "
+        f"{len(held)} of {len(tried)} rows hold; {len(rows) - len(tried)} do not apply, each with "
         "its reason."
     ]
     if len(held) and isfinite(least := held.margin.iloc[0]):

@@ -1,9 +1,9 @@
 """The stability map: step over critical step against damping ratio, one run for every cell.
 
-With all dashpots eta times their springs the mode of the largest frequency omega decides. Its
-damping ratio is zeta = eta omega / 2, and in x = omega dt / 2, the step over the undamped critical
-one, the critical step of `numerics.critical_step` reads x = sqrt(1 + 4 zeta^2) - 2 zeta. A cell is
-stable if the divergence monitor lets the run end.
+If every dashpot is eta times its spring, the mode of highest frequency omega, with damping ratio
+zeta = eta omega / 2, determines stability. The critical step of `numerics.critical_step`, over the
+undamped one, is x = omega dt / 2 = sqrt(1 + 4 zeta^2) - 2 zeta. A cell is stable if the divergence
+monitor does not stop its run.
 """
 
 from math import pi
@@ -23,7 +23,7 @@ from jointwave.compare.figures.style import style
 from jointwave.compare.scenes import find
 from jointwave.compare.studies.store import Row
 
-#: A short pillar with free ends, pushed by a step, in which all modes move.
+#: A short pillar with free ends under a stress step, which excites all modes.
 SCENE = "hard/short-pillar"
 PUSHED: dict[str, Any] = {
     "pillar.length": 4.0,
@@ -36,27 +36,26 @@ PUSHED: dict[str, Any] = {
 }
 STEPS, SAMPLES = 3000, 10
 CELLS = 24
-LIGHT = "#eceff2"  # of unstable cells
+LIGHT = "#eceff2"  # colour of unstable cells
 
 
 def boundary(ratio: np.ndarray) -> np.ndarray:
-    """Return the critical step over the undamped one at damping ratios of the highest mode."""
+    """Return the critical step over the undamped one for damping ratios of the highest mode."""
     return 1 / (np.sqrt(1 + 4 * ratio**2) + 2 * ratio)
 
 
 def columns(engines: tuple[str, ...] = tuple(ENGINES), cells: int = CELLS) -> list[Row]:
-    """Return the columns of the maps of some engines, not yet computed: the engine, the damping
-    `ratio` of the highest mode, and the `steps` over the critical one of the undamped pillar at the
-    centres of the cells."""
+    """Return the columns of some engines' maps, not yet computed: the `engine`, the damping `ratio`
+    of the highest mode, and the `steps` at the cell centres, over the undamped critical step."""
     steps, ratios = np.geomspace(0.02, 2, cells).tolist(), np.geomspace(1e-3, 10, cells).tolist()
     return [{"engine": x, "ratio": zeta, "steps": steps} for x in engines for zeta in ratios]
 
 
 def computed(column: Row) -> Row:
-    """Return a column and which of its cells are `stable`."""
+    """Run the cells of a column; return it with a list of which are `stable`."""
     engine, critical = ENGINES[column["engine"]], _prepared(column["engine"], {})
     beta = column["ratio"] * critical  # eta = 2 zeta / omega
-    # Ratios in proportion to frequencies leave Rayleigh's alpha zero.
+    # Ratios proportional to frequencies give a zero Rayleigh alpha.
     rayleigh = {"frequencies": [1.0, 2.0], "ratios": [pi * beta, 2 * pi * beta]}
     damping = {"damping.rayleigh": rayleigh}
     own = _prepared(column["engine"], damping)
@@ -73,19 +72,20 @@ def computed(column: Row) -> Row:
 
 
 def cells_to_run(column: Row) -> tuple[AnyScene, str, int]:
-    """Return the scene of a column's longest step, its engine, and its number of stable cells."""
+    """Return the scene with the undamped critical step, the engine, and the number of cells that
+    theory calls stable."""
     engine, critical = ENGINES[column["engine"]], _prepared(column["engine"], {})
     stable = sum(x < boundary(np.array(column["ratio"])) for x in column["steps"])
     return _scene(engine.engine, critical, 1.0, {}), engine.name, int(stable)
 
 
 def _prepared(engine: str, changes: dict[str, Any]) -> float:
-    """Return the critical step of the pushed pillar with some changes, s."""
+    """Return the critical step of the loaded pillar with some changes, s."""
     return ENGINES[engine].prepare(cases.load_variant(find(SCENE), "", PUSHED | changes)).critical
 
 
 def _scene(table: str, dt: float, fraction: float, changes: dict[str, Any]) -> AnyScene:
-    """Return the pushed pillar with STEPS steps of dt, a fraction of the critical one."""
+    """Return the loaded pillar with STEPS steps of dt, s, given also over the critical step."""
     interval = dt * STEPS / SAMPLES
     times = {"record.interval": interval, "time.duration": interval * SAMPLES}
     table = f"numerics.{table}"
@@ -96,8 +96,8 @@ def _scene(table: str, dt: float, fraction: float, changes: dict[str, Any]) -> A
 def cells_of(found: list[Row]) -> pd.DataFrame:
     """Return the cells of computed columns.
 
-    wrong : whether a cell differs from theory at its centre; far : and lies further than a cell
-    from the boundary.
+    wrong : whether a cell contradicts theory at its centre. far : whether it is wrong and more than
+    one cell away from the boundary.
     """
     cells = pd.DataFrame(found).explode(["steps", "stable"])
     cells = cells.rename(columns={"steps": "step"}).astype({"step": float, "stable": bool})
@@ -108,8 +108,7 @@ def cells_of(found: list[Row]) -> pd.DataFrame:
 
 
 def draw_maps(cells: pd.DataFrame) -> Figure:
-    """Return the maps of all engines under the theoretical line; crosses mark cells on its wrong
-    side.
+    """Return the maps of all engines with the theoretical limit; crosses mark wrong cells.
 
     The cells of engine k are the SVG group stability-map-k, its line stability-line-k.
     """

@@ -3,14 +3,14 @@
 References are exact solutions, or fine runs whose own error is bounded. Columns of a row:
 
 state : "done" or "failed", with the reason in `message`.
-numerical : misfit from the exact solution of the method's own model; modelling : of that from the
-    finest physics; total : sum of both and their floors, an upper bound. measured : from the finest
-    physics, where the two may cancel.
-numerical_floor, total_floor : below which they are not known, 0 against closed forms.
-dt : s. steps : of time. work : freedoms times evaluations of all forces, which are
-    degree-of-freedom-steps where a step takes one. bytes : of the model and its state.
-seconds, spread : stepping, median and half the range of the repeats, or of the first run where that
-    takes long; setup, compile : of the first run.
+numerical : misfit from the exact solution of the method's own model. modelling : misfit of that
+    solution from the finest physics. total : upper bound, the sum of both and of their floors.
+    measured : misfit from the finest physics, in which the two errors may cancel.
+numerical_floor, total_floor : errors of the references; smaller errors are not known. 0 for closed
+    forms.
+dt : s. steps : of time. work : freedoms times force evaluations. bytes : of the model and state.
+seconds, spread : stepping, median and half the range of the repeats; of one run if it takes long.
+setup, compile : of the first run.
 """
 
 from collections.abc import Sequence
@@ -31,10 +31,10 @@ from jointwave.compare.studies.store import FAILURES, Row
 from jointwave.compare.studies.study import FINEST, NONE, FineRun, Study, StudyPoint
 from jointwave.results.dataset import scene_hash
 
-LONG = 0.1  # s: longer steps are timed once
+LONG = 0.1  # s of stepping; longer runs are timed once
 
 
-#: Columns of a point's row; a number that it has not is missing.
+#: Columns of a point's row; unknown numbers are missing.
 WORDS = ("curve", "method", "settings", "state", "message")
 ERRORS = ("numerical", "modelling", "total", "measured", "numerical_floor", "total_floor")
 COUNTS = ("dt", "steps", "freedoms", "work", "bytes", "seconds", "spread", "setup", "compile")
@@ -43,8 +43,9 @@ COUNTS = ("dt", "steps", "freedoms", "work", "bytes", "seconds", "spread", "setu
 class Reference(NamedTuple):
     """The reference of errors.
 
-    error : relative, of the reference itself: the bound of a computed solution, 0 for a closed
-    form; for a run its distance from a coarser one. settings : of a run, "" for an exact solution.
+    error : relative error of the reference itself: 0 for a closed form, the bound of a computed
+    solution, for a run the distance from a coarser one. settings : of a run, "" for an exact
+    solution.
     """
 
     name: str
@@ -77,7 +78,7 @@ def _run(point: StudyPoint) -> xr.Dataset:
 
 
 def is_valid(point: StudyPoint) -> bool:
-    """Return whether a point has a scene, to which its method applies."""
+    """Return whether the scene of a point is valid and its method applies."""
     try:
         return bool(applies(point.curve.method, point.scene))
     except SceneError:
@@ -86,7 +87,7 @@ def is_valid(point: StudyPoint) -> bool:
 
 def _counts(result: xr.Dataset) -> dict[str, float]:
     about = result.attrs
-    # Forces are evaluated in stages, by Newton's method, or once per step.
+    # Forces are evaluated once per stage, per Newton iteration, or per step.
     counted = ("force_evaluations", "newton_iterations", "steps")
     evaluations = next((about[x] for x in counted if x in about), nan)
     names = {"freedoms": "degrees_of_freedom", "setup": "seconds_setup"}
@@ -96,7 +97,7 @@ def _counts(result: xr.Dataset) -> dict[str, float]:
 
 
 def errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
-    """Return the errors of a result and their floors, by column; nan if unknown."""
+    """Return the errors of a result and their floors by column; nan if unknown."""
     study = point.study
     own = _known(own_of(point), study, point.physics)
     finest = _known(finest_of(study), study, {})
@@ -114,13 +115,13 @@ def errors(point: StudyPoint, result: xr.Dataset) -> dict[str, float]:
 
 
 def able(scene: AnyScene) -> list[str]:
-    """Return the names of all that applies to a scene."""
+    """Return the names of all solvers that apply to a scene."""
     return [name for name, answer in applicable(scene).items() if answer]
 
 
 def finest_of(study: Study) -> str | FineRun | None:
-    """Return the reference of total errors: as set by the study, else the finest exact solution;
-    None if the finest that applies is an engine and the study gives no fine run of it."""
+    """Return the reference of total errors: the one set by the study, else the finest solver that
+    applies if it is an exact solution, else None."""
     if study.finest is not None:
         return None if study.finest == NONE else study.finest
     found = finest(able(study.base), study.base)
@@ -128,8 +129,9 @@ def finest_of(study: Study) -> str | FineRun | None:
 
 
 def own_of(point: StudyPoint) -> str | FineRun | None:
-    """Return the reference of a point's numerical error: as set by its curve, else the exact
-    solution of its own model, else a run of its engine as fine as the study's; None without."""
+    """Return the reference of a point's numerical error: the one set by its curve, else the exact
+    solution of its own model, else its method run with the settings of the study's fine run if both
+    use the same engine, else None."""
     own, study, scene = point.curve.own, point.study, point.scene
     if own is not None:
         return finest_of(study) if own == FINEST else None if own == NONE else own
@@ -142,7 +144,7 @@ def own_of(point: StudyPoint) -> str | FineRun | None:
 
 
 def references(points: Sequence[StudyPoint]) -> list[tuple[str, AnyScene]]:
-    """Return the solver and the scene of every reference of some points, each once."""
+    """Return solver and scene of every reference of some points, without repetitions."""
     found: dict[tuple[str, str], tuple[str, AnyScene]] = {}
     for point in points:
         for against, physics in ((own_of(point), point.physics), (finest_of(point.study), {})):
@@ -153,8 +155,7 @@ def references(points: Sequence[StudyPoint]) -> list[tuple[str, AnyScene]]:
 
 
 def _scenes_of(against: str | FineRun, study: Study, physics: dict[str, Any]) -> tuple[Any, ...]:
-    """Return the solver of a reference and its scene, for a fine run also that of the coarser
-    one."""
+    """Return the solver and scene of a reference; for a fine run also the coarser scene."""
     if isinstance(against, str):
         scene = study.changed(physics)  # an exact solution has no numerics
         return against, scene.model_copy(update={"numerics": type(scene.numerics)(), "expect": {}})
@@ -165,7 +166,7 @@ def _scenes_of(against: str | FineRun, study: Study, physics: dict[str, Any]) ->
 def _known(
     against: str | FineRun | None, study: Study, physics: dict[str, Any]
 ) -> Reference | None:
-    """Return a reference of the study's scene with some physics changed; None without."""
+    """Return a solved reference for the study's scene with changed physics; None if none is set."""
     if against is None:
         return None
     name, *scenes = _scenes_of(against, study, physics)
@@ -182,8 +183,8 @@ def exact_reference(name: str, scene: AnyScene) -> Reference:
 
 
 def _error(result: xr.Dataset, against: Reference | None, study: Study) -> tuple[float, float]:
-    """Return the error of a result, and its floor, below which it is not known; 0 of a reference
-    itself, nan without one."""
+    """Return the error of a result and its floor, the error of the reference; both 0 for the
+    reference itself, nan without a reference."""
     if against is None:
         return nan, nan
     if result is against.result:
@@ -203,8 +204,8 @@ def _solved(name: str, scene: AnyScene) -> xr.Dataset:
 
 
 def _misfit(one: xr.Dataset, other: xr.Dataset, study: Study) -> float:
-    """Return the misfit of the worst waveform; for a single quantity, the relative L2 norm over
-    time and all its receivers, of the worst component."""
+    """Return the misfit of the worst waveform; if the study names a quantity, its relative L2
+    misfit over time and all receivers, of the worst component."""
     if study.quantity is None:
         return worst(one, other).misfit
     by_component: dict[str, list[Worst]] = {}

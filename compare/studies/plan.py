@@ -1,8 +1,9 @@
-"""The cheapest way to solve a scene within a misfit: runs from cheap to dear until one meets it.
+"""The cheapest way to solve a scene within a misfit: try runs in order of cost until one meets it.
 
-The criterion is the sum of two errors: the numerical one, of a run from its engine's own model, and
-the modelling one, of that model from the finest physics. Errors that happen to cancel are therefore
-no accuracy, and a run meets the misfit only if all runs of smaller steps do so, one at least.
+The criterion is the sum of the numerical error (run against its engine's own model) and the
+modelling error (that model against the finest physics), so errors that cancel do not count as
+accuracy. A run meets the misfit only if at least one run with smaller steps was made, and all such
+runs meet it too.
 """
 
 from collections.abc import Iterator
@@ -25,13 +26,13 @@ from jointwave.compare.studies.elements import Elements, configured, elements, l
 from jointwave.compare.studies.measure import Reference, able, exact_reference
 from jointwave.compare.studies.store import FAILURES, reason_of
 
-LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping: no run is longer, unless asked for
-STALLED = 0.8  # of the error before: smaller steps no longer help
+LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping, the limit if none is given
+STALLED = 0.8  # least ratio to the previous error at which smaller steps no longer help
 
 
 class PlannedRun(NamedTuple):
-    """A run: its engine, elements and step, its numerical and modelling error with those of their
-    references, and its seconds of stepping.
+    """A run: its elements and step, its numerical and modelling error, each including the error of
+    its reference, and its seconds of stepping.
 
     reference : of the numerical error.
     """
@@ -44,23 +45,23 @@ class PlannedRun(NamedTuple):
 
     @property
     def misfit(self) -> float:
-        """Sum of numerical and modelling error, without regard to cancellation."""
+        """Sum of numerical and modelling error, an upper bound."""
         return self.numerical + self.modelling
 
     @property
     def options(self) -> list[str]:
-        """The values of `--set` that make it."""
+        """The values of `--set` that reproduce the run."""
         table = ENGINES[self.elements.name].engine
         return [f"numerics.{table}.{k}={value}" for k, value in self.elements.numerics.items()]
 
 
 @dataclass
 class Plan:
-    """The runs of a scene, from cheap to dear, and the choice among them.
+    """The runs of a scene, in order of cost, and the choice among them.
 
-    asked : the misfit. limit : s of stepping, None without. finest : the finest physics, and the
-    reason for it. own : what `own_model` has found. skipped : what could not or need not be run,
-    with the reason. planning : s.
+    asked : the requested misfit. limit : s of stepping, None if not limited. finest : the finest
+    physics; reason : why it is the finest. own : results of `own_model`. skipped : reason for each
+    run that was not made. planning : s.
     """
 
     scene: AnyScene
@@ -75,8 +76,8 @@ class Plan:
 
     @property
     def chosen(self) -> PlannedRun | None:
-        """The cheapest run that meets the misfit, else the most accurate, of several the finest;
-        within the limit. None without any."""
+        """The cheapest run within the limit that meets the misfit, else the most accurate one (of
+        equals the finest); None if there is no run."""
         runs = [run for run in self.runs if self.limit is None or run.seconds <= self.limit]
         if meeting := [run for run in runs if self._is_met_by(run)]:
             return min(meeting, key=lambda run: run.seconds)
@@ -84,7 +85,7 @@ class Plan:
 
     @property
     def misfit(self) -> float:
-        """Worst sum of numerical and modelling error of the chosen run; inf without one."""
+        """Sum of errors of the chosen run, see `worst`; inf if there is none."""
         return inf if self.chosen is None else self.worst(self.chosen)
 
     @property
@@ -94,7 +95,7 @@ class Plan:
 
     @property
     def affordable(self) -> float:
-        """The expected seconds above which a further run is useless, or too long."""
+        """The expected seconds above which another run is useless or too long."""
         if self.chosen and self.is_met:
             return self.chosen.elements.seconds
         if self.limit is not None:
@@ -102,7 +103,8 @@ class Plan:
         return LONGEST[self.scene.kind] - sum(run.seconds for run in self.runs)
 
     def worst(self, run: PlannedRun) -> float:
-        """Return the largest sum of errors of a run and of all smaller steps of its elements."""
+        """Return the largest sum of errors among a run and all runs of its elements with smaller
+        steps."""
         return max(one.misfit for one in [run, *self._finer(run)])
 
     def _is_met_by(self, run: PlannedRun) -> bool:
@@ -119,7 +121,7 @@ def plan(
 ) -> Plan:
     """Return the runs made to find the cheapest one within a misfit, and the choice among them.
 
-    seconds : limit of stepping, s: the best misfit within it if `misfit` costs more.
+    seconds : limit of stepping, s; if the misfit costs more, the best run within it is chosen.
     Raises SceneError if there is no exact solution and no affordable run converges.
     """
     began, scene = perf_counter(), load(scene)
@@ -152,10 +154,10 @@ def plan(
 
 
 def _tried(made: Plan, one: Elements) -> list[Elements]:
-    """Run elements, and with half the step if they meet the misfit.
+    """Run elements; if they meet the misfit, confirm it with half the step.
 
-    Return what is to be tried next: elements of half the size, the first time, and half the step.
-    Raises SceneError if their model cannot meet the misfit.
+    Return what to try next: on the first run of these elements finer ones, and half the step unless
+    confirmed or stalled. Raises SceneError if their model cannot meet the misfit.
     """
     reference, modelling = own_model(made, one)
     if modelling + reference.error >= made.asked and made.limit is None:
@@ -176,8 +178,8 @@ def _tried(made: Plan, one: Elements) -> list[Elements]:
 
 
 def own_model(made: Plan, one: Elements) -> tuple[Reference, float]:
-    """Return the reference of the numerical errors of elements, and the distance of their model
-    from the finest physics at most, found once; raises SceneError without a reference."""
+    """Return the reference for numerical errors of elements, and an upper bound of their modelling
+    error; computed once per model. Raises SceneError if there is no reference."""
     key = label(one.name, one.model)
     if key not in made.own:
         try:
@@ -207,10 +209,10 @@ def _reference(
     asked: float,
     finest: xr.Dataset | None = None,
 ) -> Reference:
-    """Return an exact solution, or a converged run of a model, known to a tenth of a misfit.
+    """Return an exact solution, or a converged run, whose error is below a tenth of the misfit.
 
-    Less suffices once the model is certain to be further than the misfit from the finest physics.
-    Raises SceneError if it is not known so well.
+    A larger error suffices once the model is certainly further from `finest` than the misfit.
+    Raises SceneError if no such accuracy is reached.
     """
     is_run = name in ENGINES
     for found in _runs(scene, name, model) if is_run else [exact_reference(name, plain(scene))]:
@@ -223,11 +225,10 @@ def _reference(
 
 
 def _runs(scene: AnyScene, name: str, model: dict[str, Any]) -> Iterator[Reference]:
-    """Yield runs of a model, each of at most half the step, and of elements of half the size, of
-    the previous one.
+    """Yield runs of a model, each with at most half the previous step and, in rock, finer elements.
 
-    The error of a run is at most its distance from the previous one if errors fall at least in
-    proportion to the step.
+    The stated error is the distance from the previous run, an upper bound if errors fall at least
+    in proportion to the step.
     """
     is_rigid, before = ENGINES[name].has_rigid_blocks, None
     one = elements(scene, name, model if is_rigid else choices.EXPLICIT | choices.rock(scene, 2))

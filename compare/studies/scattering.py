@@ -1,11 +1,10 @@
 """Reflection and transmission of P and SV waves at joints, by every solver of rock masses.
 
-The scenes of the waves, and what is read off their motion, are those of `transmission`. Columns of
-the table: `solver`, `incidence` ("P" or "SV"), `angle` from the joints' normal (degrees), number of
-`joints`; R_p to T_s, moduli of particle velocity over the incident one at the pulse's frequency;
-`error`, the largest difference from the closed form; `residual`, the part of the motion that plane
-waves do not explain; `freedoms` of the blocks or the rock; `cpu`, CPU time of the run with set-up,
-without compiling (s).
+`transmission` sets the scenes and computes the amplitudes. Columns of the table: `solver`,
+`incidence` ("P" or "SV"), `angle` from the joints' normal (degrees), number of `joints`; R_p to
+T_s, moduli of particle velocity over the incident one at the pulse's frequency; `error`, largest
+difference from the closed form; `residual`, part of the motion that plane waves do not explain;
+`freedoms` of the blocks or the rock; `cpu`, CPU time with set-up, without compiling (s).
 """
 
 from collections.abc import Sequence
@@ -39,10 +38,10 @@ from jointwave.compare.studies.transmission import SCENE, ParallelJoints
 from jointwave.compare.text import percent
 
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0)  # degrees from the joints' normal
-COUNTS, AT = (2, 3, 5), 30.0  # of parallel joints, at this angle, degrees
+COUNTS, AT = (2, 3, 5), 30.0  # numbers of parallel joints, and their angle, degrees
 SPACING = 0.960768922830523  # m, a tenth of the P wavelength
 COMPILED = 0.05  # s of compiling, above which a run is repeated for timing
-#: The studies, each of which has the name of its exact solution.
+#: The studies; each is named like its exact solution.
 TITLES = {
     "oblique-joint": "Reflection and transmission at one joint against the angle",
     "parallel-joints": "Reflection and transmission of parallel joints at 30 degrees",
@@ -67,8 +66,7 @@ INK = "#30363b"
 
 
 def points(study: str, brief: bool = False) -> list[Row]:
-    """Return the points of a study, solver by solver: one joint at all angles (degrees), or many at
-    one.
+    """Return the points of a study by solver: one joint at all angles, or several joints at one.
 
     brief : only every other angle or number of joints.
     """
@@ -84,7 +82,7 @@ def points(study: str, brief: bool = False) -> list[Row]:
 
 
 def joints_of(count: int) -> ParallelJoints:
-    """Return this number of the joints of `joints.toml`, a tenth of the P wave apart."""
+    """Return `count` copies of the joint of `joints.toml`, a tenth of the P wavelength apart."""
     base: Any = load(SCENE)[0]
     (one,), period = base.joint_sets, base.waves[0].period
     joint = Joint(one.normal_stiffness, one.shear_stiffness)
@@ -116,8 +114,7 @@ def measure(point: Row) -> Row:
 def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
     """Return a study of TITLES, with its table and figure in `out`, its points in OUT/NAME/.
 
-    Seconds are CPU time: as many points may run at a time as there are cores. brief : only every
-    other point, see `points`.
+    Seconds are CPU time, so several points may run at a time. brief : see `points`.
     """
 
     def key(point: Row) -> str:
@@ -126,8 +123,8 @@ def experiment(name: str, out: Path, brief: bool = False) -> Experiment:
     def runs(left: Sequence[Row]) -> list[Run]:
         return [Run(name, scene_at(one), one["solver"]) for one in left]
 
-    wanted, told = points(name, brief), partial(summarise, name, out)
-    return Experiment(TITLES[name], wanted, out / name, key, measure, told, runs, timed=True)
+    wanted, summary = points(name, brief), partial(summarise, name, out)
+    return Experiment(TITLES[name], wanted, out / name, key, measure, summary, runs, timed=True)
 
 
 def summarise(name: str, out: Path, found: list[Row]) -> Summary:
@@ -142,7 +139,7 @@ def summarise(name: str, out: Path, found: list[Row]) -> Summary:
 
 
 def table(name: str, rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the moduli and their error under headings of their solver and wave."""
+    """Return the moduli and their error under headings of solver and wave."""
     varied = VARIED[name][0]
     found = rows.assign(**{"": _headings(rows), "residual, %": 100 * rows.residual})
     found = found.rename(columns={"freedoms": "DOFs", "cpu": "CPU, s"}).set_index(["", varied])
@@ -154,7 +151,7 @@ def _headings(rows: pd.DataFrame) -> pd.Series:
 
 
 def sentences(rows: pd.DataFrame) -> list[str]:
-    """Return the largest error of each solver and kind of wave, and the cost of all its runs."""
+    """Return the largest error and the total cost of each solver and kind of wave."""
     found = []
     for heading, some in rows.groupby(_headings(rows), sort=False):
         worst = some.loc[some.error.idxmax()]
@@ -168,10 +165,10 @@ def sentences(rows: pd.DataFrame) -> list[str]:
 
 
 def draw(name: str, rows: pd.DataFrame) -> Figure:
-    """Return the diagram of a study: moduli by angle or number, P and SV waves side by side.
+    """Return the diagram of a study: moduli over angle or number, P and SV waves side by side.
 
-    The closed form is a line, of wave w of kind k the SVG group NAME-exact-k-w; solver j is its
-    points, NAME-k-j-w.
+    For incident kind k and wave w the closed form is the line NAME-exact-k-w, an SVG group; solver
+    j gives the points NAME-k-j-w.
     """
     varied, heading = VARIED[name]
     with blank(3.6) as figure:

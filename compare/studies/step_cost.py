@@ -1,4 +1,4 @@
-"""The cost of a step of one rigid block, or of one degree of freedom of deformable rock."""
+"""The cost of a time step per rigid block, or per degree of freedom of deformable rock."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,24 +13,24 @@ from jointwave.compare.solvers.dem import DEM
 from jointwave.results.dataset import scene_hash
 
 SCENES = Path(__file__).parent / "scenes"
-UNIT_STEPS = 1_000_000  # steps of one block or freedom in a timed run, about
+UNIT_STEPS = 1_000_000  # steps times blocks or freedoms of a timed run, about
 REPEATS = 5
-BLOCKS = 1000  # with every effect, at most
+BLOCKS = 1000  # at most, in the scene with every effect
 
 
 class StepCost(NamedTuple):
-    """The least cost of a step in some runs, ns, and the excess of their median: the resolution of
-    timings on this machine."""
+    """The least cost of a step among repeated runs, ns, and by how much their median exceeds it,
+    the resolution of timings on this machine."""
 
     ns: float
     noise: float
 
 
 def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCost]:
-    """Return the cost of a step of one block or freedom in an engine's runs of some scenes.
+    """Return the cost of a step per block or freedom for each scene in an engine.
 
     The beginning of each scene is run several times; the scenes alternate, so that temporary load
-    of the machine affects all of them. The rates are stored, see `compare.runs.timings`.
+    of the machine affects all of them. The rates are saved, see `compare.runs.timings`.
     Raises SceneError if the engine does not apply, UnstableError if a run becomes unstable.
     """
     short = [shortened(scene, name, threads=1) for scene in scenes]
@@ -49,9 +49,9 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
 def shortened(
     scene: AnyScene, name: str = DEM.name, unit_steps: int = UNIT_STEPS, threads: int | None = None
 ) -> AnyScene:
-    """Return the beginning of a scene, one sample or more, without snapshots; of what has no steps
-    an eighth. unit_steps : steps of one block or freedom, about. threads : of rigid blocks, if not
-    the scene's own."""
+    """Return the beginning of a scene, at least one sample, without snapshots; an eighth if the
+    solver has no time steps. unit_steps : steps times blocks or freedoms, about. threads : of rigid
+    blocks; None: the scene's own."""
     run = solver(name).prepare(scene)
     steps = run.steps * solver(name).units(scene, run.freedoms)
     part = min(1.0, unit_steps / steps) if steps else 1 / 8
@@ -64,8 +64,8 @@ def shortened(
 
 
 def with_every_effect(scene: AnyScene) -> AnyScene:
-    """Return a scene of this kind with every effect and about as many rigid blocks: with few blocks
-    the fixed cost of a step matters."""
+    """Return a scene of the same kind with every effect and about as many rigid blocks, since the
+    fixed cost of a step matters if there are few."""
     if scene.is_column:
         count = min(scene.block_count, BLOCKS)
         return cases.load_variant(SCENES / "every-effect.toml", "", {"pillar.length": 0.5 * count})
@@ -78,8 +78,8 @@ def with_every_effect(scene: AnyScene) -> AnyScene:
 
 
 def cost_of_every_effect(scene: AnyScene) -> StepCost:
-    """Return the cost of a step of one block with every effect there is, in about as many blocks as
-    a scene has; it is measured once."""
+    """Return the cost of a step per block with every effect that exists, for about as many blocks
+    as a scene has; measured once per process."""
     full = with_every_effect(scene)
     name = scene_hash(full)
     if name not in _every_effect:

@@ -1,4 +1,4 @@
-"""The points of studies, computed by any processes, and the names that their results have."""
+"""Running the points of studies in processes, and the keys under which they are saved."""
 
 import gc
 import hashlib
@@ -26,7 +26,7 @@ from jointwave.compare.runs.processes import Processes
 P = TypeVar("P")
 T = TypeVar("T")
 Row = dict[str, Any]  #: the readings of a point, by column
-#: Yields the name and the result of each point as soon as it is done; None: its process has died.
+#: Yields the name and result of each point when it is done; result None: its process has died.
 Pool = Callable[[Callable[[Any], Any], Mapping[str, Any]], Iterator[tuple[str, Any]]]
 
 FAILURES = (SceneError, UnstableError)  # of an invalid scene, or an unstable run
@@ -34,12 +34,12 @@ DIED = "its process ended early, possibly for lack of memory"
 
 
 def reason_of(error: Exception) -> str:
-    """Return why something could not be run: the key and what is allowed, without the file."""
+    """Return the reason of a failure: the key and what is allowed, without the file."""
     return f"{error.key} {error.allowed}".strip() if isinstance(error, SceneError) else str(error)
 
 
 def key(*about: Any) -> str:
-    """Return the key of a point: a hash of its determining data (JSON) and of this program."""
+    """Return the key of a point: a hash of the data that determine it (JSON) and of the program."""
     text = json.dumps([*about, program()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -47,9 +47,9 @@ def key(*about: Any) -> str:
 def in_processes(
     count: int, work: Callable[[P], T], points: Mapping[str, P]
 ) -> Iterator[tuple[str, T | None]]:
-    """Compute points in so many processes of this machine; 1: this one.
+    """Compute points in `count` processes of this machine; 1: in this process.
 
-    All processes end with one that dies. The points that are left are then computed one at a time.
+    If a process dies, all end; the remaining points are then computed one at a time.
     """
     left = dict(points)
     try:
@@ -67,8 +67,8 @@ def in_processes(
 def _parallel(
     count: int, work: Callable[[P], T], points: Mapping[str, P]
 ) -> Iterator[tuple[str, T]]:
-    """Yield named results, in the order in which they are done."""
-    # joblib replaces a worker that has grown: no point is lost
+    """Yield named results in order of completion."""
+    # joblib warns when it replaces a worker that uses too much memory; no point is lost.
     warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
@@ -81,9 +81,8 @@ def _parallel(
 
 @contextmanager
 def _ignoring_interrupts() -> Iterator[None]:
-    """Ignore Ctrl-C, as workers that start meanwhile do from then on: it is for this process, which
-    ends them."""
-    if current_thread() is not main_thread():  # where signals never arrive
+    """Start workers that ignore Ctrl-C: this process receives it and ends them."""
+    if current_thread() is not main_thread():  # only the main thread can set signal handlers
         yield
         return
     handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -96,9 +95,9 @@ def _ignoring_interrupts() -> Iterator[None]:
 def _named(
     name: str, point: P, work: Callable[[P], T], folder: Path, is_worker: bool
 ) -> tuple[str, T]:
-    """Work on a point. What a worker has made, mostly compiled kernels, stays: joblib looks for
-    garbage after each point, among a million objects of numba for half a second."""
-    os.chdir(folder)  # processes outlive a call, and remember the folder of the first one
+    """Work on a point. A worker then freezes its objects, mostly compiled kernels: joblib collects
+    garbage after each point, which takes half a second with a million objects of numba."""
+    os.chdir(folder)  # workers outlive a call and stay in the folder of the first one
     result = work(point)
     if is_worker:
         gc.collect()
@@ -109,17 +108,17 @@ def _named(
 def on_executor(
     executor: Executor, work: Callable[[P], T], points: Mapping[str, P]
 ) -> Iterator[tuple[str, T]]:
-    """Compute points on an executor."""
+    """Yield named results of points computed on an executor, in order of completion."""
     futures = {executor.submit(work, point): name for name, point in points.items()}
     for future in as_completed(futures):
         yield futures[future], future.result()
 
 
 def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]) -> T | None:
-    """Return the result of `work(pool)`; the first of several MPI processes hands points to the
-    others, and these return None when it is done.
+    """Return the result of `work(pool)`. Under MPI the first process distributes points to the
+    others, which return None when it is done.
 
-    workers : processes of this machine, if MPI has started none; 1: only this one.
+    workers : number of processes without MPI; 1: only this one.
     """
     if processes.comm is None:
         return work(partial(in_processes, workers))
@@ -130,5 +129,5 @@ def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]
 
 
 def alone() -> AbstractContextManager[None]:
-    """Wait until no other timed study is running on this machine."""
+    """Return a lock that waits until no other timed study runs on this machine."""
     return exclusive(Path(gettempdir()), wait=True)

@@ -19,10 +19,10 @@ from jointwave.compare.engines import names
 from jointwave.compare.scenes import find
 
 SHIPPED = Path(__file__).parent / "shipped"
-IN_CODE = ("stability", "oblique-joint", "parallel-joints")  # studies that have no file there
+IN_CODE = ("stability", "oblique-joint", "parallel-joints")  # studies without a file
 LARGEST_FILE = 1_000_000  # bytes
 MOST_POINTS = 10_000
-FINEST, NONE = "finest", "none"  # references of errors other than solutions
+FINEST, NONE = "finest", "none"  # references that are not names of solvers
 
 
 def _is_known(name: Any) -> Any:
@@ -36,7 +36,7 @@ KNOWN = BeforeValidator(_is_known)
 
 
 def combinations(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
-    """Return every combination of the values of some keys, the last key first to change."""
+    """Return every combination of the values of some keys; the last key varies fastest."""
     return [dict(zip(values, one, strict=True)) for one in product(*values.values())]
 
 
@@ -53,8 +53,8 @@ class StudyTable(BaseModel):
 class FineRun(StudyTable):
     """The reference of errors if there is no exact solution: an engine's fine run.
 
-    changes : of the scene, mainly its numerics. coarser : additional changes; the distance of that
-        run from this one is the floor below which errors are not known.
+    changes : of the scene, mainly its numerics. coarser : additional changes for a coarser run; the
+        distance between both is the floor below which errors are not known.
     """
 
     method: Annotated[str, KNOWN]
@@ -66,15 +66,15 @@ class Curve(StudyTable):
     """One way to solve the scene, with its varied keys.
 
     method : an engine or an exact solution.
-    vary : dotted keys and their values, all combinations.
-    each : dotted keys and their values: every combination is a curve of its own, whose label has
-        the value in place of the key's last part in braces.
-    own : the exact solution of the curve's own model, or a fine run of it, for its numerical
-        error; "finest": that of the study; "none"; absent: the exact one that ranks highest
-        (`compare.misfit.ranking`), else a run of its engine at the numerics of the study's fine
-        run.
-    order : in theory, of the numerical error, with the first varied key or, where that falls as
-        its value grows (elements, steps per period), with its inverse.
+    vary : dotted keys and their values: every combination is a point.
+    each : dotted keys and their values: every combination is a separate curve. In its label the
+        value replaces the last part of the key in braces.
+    own : reference of the numerical error: the exact solution of the curve's own model, or a fine
+        run of it; "finest": the reference of the study; "none"; absent: the highest-ranking exact
+        solution (`compare.misfit.ranking`), else the curve's method with the numerics of the
+        study's fine run.
+    order : theoretical order of the numerical error in the first varied key, or in its inverse if
+        the error falls as the key grows (elements, steps per period).
     """
 
     label: str
@@ -87,8 +87,7 @@ class Curve(StudyTable):
 
 
 def _expanded(curves: list[Curve]) -> list[Curve]:
-    """Return the curves into which `each` expands some; raises ValueError for more points than
-    allowed."""
+    """Return the curves with `each` expanded; raises ValueError for more points than allowed."""
     lengths = ([*map(len, (*one.each.values(), *one.vary.values()))] for one in curves)
     if (count := sum(map(prod, lengths))) > MOST_POINTS:
         raise ValueError(f"give {count:.6g} points, at most {MOST_POINTS}")
@@ -107,10 +106,10 @@ class Study(StudyTable):
 
     finest : the reference of modelling errors: an exact solution or a fine run; "none";
         absent: the exact solution that ranks highest.
-    quantity : whose relative L2 norm over time and all its receivers is the misfit, as in
-        the theory of orders; absent: the misfit of the worst waveform.
+    quantity : the misfit is its relative L2 norm over time and all receivers, as in the theory of
+        orders; absent: the misfit of the worst waveform.
     note : a remark for the reader.
-    timed : whether seconds count: points are then run one at a time, `repeats` times each.
+    timed : whether seconds are compared: points are then run one at a time, `repeats` times each.
     """
 
     title: str
@@ -125,7 +124,7 @@ class Study(StudyTable):
     curves: Annotated[list[Curve], Field(min_length=1), AfterValidator(_expanded)]
 
     def changed(self, changes: dict[str, Any]) -> AnyScene:
-        """Return the scene with changes; raises SceneError if it is invalid."""
+        """Return the scene with further changes; raises SceneError if it is invalid."""
         changes = self.changes | changes | {"expect": {}}
         return cases.load_variant(find(self.scene), self.variant, changes, asked=False)
 
@@ -173,7 +172,7 @@ def shipped() -> dict[str, Path]:
 
 
 def load(name: str) -> Study:
-    """Read a shipped study or a study's file, whose scene may be given relative to it.
+    """Read a shipped study, or a file, which may give its scene relative to itself.
 
     Raises SceneError, in one line.
     """
@@ -184,7 +183,7 @@ def load(name: str) -> Study:
         raise SceneError(name, "", None, allowed)
     try:
         table = read_toml(path, LARGEST_FILE)
-        json.dumps(table)  # the store and the results hold all values
+        json.dumps(table)  # raises TypeError for values that cannot be saved
         study = Study.model_validate(table)
     except ValidationError as error:
         first = error.errors()[0]

@@ -45,17 +45,17 @@ def experiment(
     scene: str, cases: list[Case], out: Path | None, fresh: bool, work: Work
 ) -> Experiment:
     """Return a sweep. Its table has the rows of all cases in order, with their keys, variant and
-    folder, `state`, "done" or "failed", and the reason in `message`.
+    folder, `state` ("done" or "failed") and, if failed, the reason in `message`.
 
-    scene : its name. out : the folder; None writes nothing. Completed cases are read from it, if
-    their files are still there. fresh : compute them anew.
+    scene : its name. out : the folder; None writes nothing. fresh : compute all cases anew; else
+    completed cases are read from `out` if their files still exist.
     """
 
     def key(case: Case) -> str:
         about = case.message if case.scene is None else [case.scene.name, scene_hash(case.scene)]
         return store.key(str(case.folder), about, joblib.hash(work))
 
-    def told(found: list[Rows]) -> Summary:
+    def summary(found: list[Rows]) -> Summary:
         points = zip(cases, found, strict=True)
         rows = [case.columns | row for case, some in points for row in some]
         return summarise(scene, list(cases[0].settings), out, pd.DataFrame(rows))
@@ -66,7 +66,7 @@ def experiment(
         out and out / "points",
         key,
         partial(_outcome, work=work, fresh=fresh),
-        told,
+        summary,
         is_valid=lambda rows: all(Path(row["file"]).is_file() for row in rows if "file" in row),
         fresh=fresh,
         lost=lambda _: _failed(DIED),
@@ -92,8 +92,8 @@ def _failed(message: str) -> Rows:
 def run_scene(
     scene: AnyScene, folder: Path | None, fresh: bool, runs: list[tuple[str, str | None]]
 ) -> Rows:
-    """Run a scene as `jointwave run` does; return a row for each receiver of each result, with the
-    peak there. runs : (engine, model) each, see `compare.runs.jobs`."""
+    """Run a scene as `jointwave run` does; return a row with the peak at each receiver of each
+    result. runs : pairs of engine and model, see `compare.runs.jobs`."""
     rows: Rows = []
     settings = CheckpointSettings(0.0, False, Signals(), fresh)
     jobs, left_out = plan([scene], runs, folder or Path())
@@ -125,8 +125,8 @@ def _peaks(result: xr.Dataset) -> Iterator[dict[str, Any]]:
 
 
 def _in_one(quantity: str, wave: np.ndarray) -> np.ndarray:
-    """Return the only component [n], the length of a vector, or the principal stress of larger
-    magnitude in a rock mass."""
+    """Return one number per sample [n]: the only component, the length of a vector, or the
+    principal stress of larger magnitude."""
     if wave.ndim == 1 or wave.shape[1] == 1:
         return wave.ravel()
     if quantity != "stress":
@@ -143,8 +143,8 @@ def compare_scene(
     curves: list[Curves],
     align: bool,
 ) -> Rows:
-    """Compare a scene as `jointwave compare` does, and keep all results; return a row for each
-    distance."""
+    """Compare a scene as `jointwave compare` does and save all results; return a row for each
+    misfit."""
     stored = ResultFolder(folder, fresh)
     found = comparison.compare(scene, curves, None, align, spectral, stored)
     if folder is not None:

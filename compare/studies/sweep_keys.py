@@ -1,8 +1,7 @@
 """The points of sweeps and ensembles: a scene at every value of some keys.
 
-Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`. Members 1,
-2, ... of an ensemble have the seed of the joints of each variant, the next one, ...; in a rock mass
-those of each joint set.
+Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`. Member n of
+an ensemble adds n - 1 to the seed of random joints, in a rock mass to that of each joint set.
 """
 
 import json
@@ -28,8 +27,8 @@ FORMS = "must be KEY=FROM:TO:COUNT, KEY=log:FROM:TO:COUNT or KEY=A,B,C"
 class Case(NamedTuple):
     """A variant of a scene with its swept keys set.
 
-    folder : for its files, in which variants have their own; None writes nothing. scene : None if
-    it is invalid, for the reason in `message`.
+    folder : for its files, with a subfolder per variant; None writes nothing. scene : None if it is
+    invalid; `message` says why.
     """
 
     settings: dict[str, Any]
@@ -61,8 +60,8 @@ def cases_of(
     out: Path | None,
     members: int = 0,
 ) -> list[Case]:
-    """Return all variants at every point of `--set`, `--variant`, `--sweep` and `--ensemble`;
-    raises SceneError in one line, also if no point has a valid scene."""
+    """Return the cases of `--set`, `--variant`, `--sweep` and `--ensemble`: each variant at each
+    point. Raises SceneError in one line, also if no point has a valid scene."""
     fixed = dict(map(parse_override, changes))
     values = axes(given, list(fixed)) | ({MEMBER: [*range(1, members + 1)]} if members else {})
     path, found, errors = find(scene), [], []
@@ -86,7 +85,7 @@ def cases_of(
 def _scenes(
     path: Path, variant: str | None, changes: dict[str, Any], number: int
 ) -> list[AnyScene]:
-    """Return the variants, or member `number` of an ensemble of each, from 1; 0: none."""
+    """Return the variants of a scene, or member `number` (from 1) of their ensembles; 0: none."""
     found = load_variants(path, changes) if variant is None else [load(path, variant, changes)]
     if not number:
         return found
@@ -98,15 +97,15 @@ def _scenes(
 
 
 def _folder(setting: dict[str, Any], number: int) -> str:
-    """Return the name of a point's folder: its values, or its number if they are no valid name."""
+    """Return the name of a point's folder: its values, or its number if they make no valid name."""
     name = ",".join(f"{k}={v}" for k, v in setting.items())
     plain = name.isprintable() and not set(name) & set("/\\[{") and len(name.encode()) <= LONGEST
     return name if plain else f"point-{number:05d}"
 
 
 def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
-    """Return the changes that turn a scene into its member `number`, from 1; none if its joints are
-    not random."""
+    """Return the seeds of a scene's member `number` (from 1) by key; none if joints are not
+    random."""
     scatter = getattr(scene, "scatter", None)
     found = {} if scatter is None else {"scatter.seed": scatter.seed}
     for i, one in enumerate(getattr(scene, "joint_sets", [])):
@@ -118,7 +117,7 @@ def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
 def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
     """Return the values of every key of `--sweep`; raises SceneError, in one line.
 
-    fixed : the keys of `--set`.
+    fixed : keys of `--set`, which cannot be swept.
     """
     found: dict[str, list[Any]] = {}
     for text in given:
@@ -136,7 +135,7 @@ def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:
 
 def _listed(text: str, spec: str) -> list[Any]:
     values = parse_override(f"value=[{spec}]")[1]
-    if isinstance(values, str):  # of bare words
+    if isinstance(values, str):  # words without quotes
         values = [parse_override(f"value={part.strip()}")[1] for part in spec.split(",")]
     if len({json.dumps(value, default=str) for value in values}) < len(values):
         raise SceneError("--sweep", text, None, "must not repeat a value")

@@ -1,5 +1,4 @@
-"""The summary of a sweep; of an ensemble also the statistics over its members, mean and
-percentiles."""
+"""The summary of a sweep; for an ensemble also mean and percentiles over its members."""
 
 import json
 from math import inf, nan
@@ -23,22 +22,22 @@ from jointwave.results.netcdf import load_netcdf
 
 PERCENTILES = (5, 25, 50, 75, 95)
 STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
-#: What identifies the numbers of a row, besides the swept keys.
+#: Columns that, with the swept keys, identify a row.
 OF_ROW = ("variant", "engine", "pair", "one", "other", "quantity", "x", "y", "z")
-#: Numbers at a receiver of a run, and of a pair of solutions, by the column that names them.
+#: Numbers of a run at a receiver, and of a pair of solutions, by the column that names these.
 NUMBERS = {
     "engine": ("peak", "time_of_peak", "steps", "freedoms", "seconds", "energy_residual"),
     "pair": Distance._fields,
 }
 
-#: Their headings in a table, where the name alone does not say it.
+#: Headings in a table of columns whose name is not enough.
 HEADINGS = {"time_of_peak": "time of peak (s)", "seconds": "stepping (s)", "delay": "delay (s)"}
 
 
 def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame) -> Summary:
-    """Return the summary of a sweep's table; write sweep.csv, and of an ensemble its statistics.
+    """Return the summary of a sweep's table; write sweep.csv and, for an ensemble, its statistics.
 
-    scene : its name. keys : that are swept. out : None writes nothing. Raises SceneError if all
+    scene : its name. keys : the swept keys. out : None writes nothing. Raises SceneError if all
     cases have failed.
     """
     done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
@@ -57,7 +56,7 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
         shown = shown[shown.number == numbers[0]]
         legend = f"{numbers[0]}: mean and percentiles over the members; all are in ensemble.csv."
         numbers = [*STATISTICS, "members"]
-    elif by == "pair":  # the worst waveform of each
+    elif by == "pair":  # keep the worst waveform of each pair
         loud = done[done.faint == "false"].sort_values("misfit")
         shown = loud.drop_duplicates([*keys, "variant", by], keep="last").sort_index()
         legend = f"The worst waveform of each pair. {legend}"
@@ -79,7 +78,7 @@ def _records(rows: pd.DataFrame) -> Any:
 
 
 def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -> pd.DataFrame:
-    """Return rows as the table of a summary: solvers, then points and receivers."""
+    """Return rows as the table of a summary, indexed by solver, point and receiver."""
     records = rows.to_dict("records")
     labels = {"": [": ".join(filter(None, [row["variant"], in_words(row[by])])) for row in records]}
     if keys:
@@ -98,10 +97,10 @@ def _receiver(row: dict[str, Any]) -> str:
 
 def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.DataFrame:
     """Return mean and percentiles over the members of each number of the completed rows; of peaks
-    without their sign, which differs from member to member.
+    the magnitude, since their sign differs between members.
 
-    One row per number: the swept keys, its identification, `number`, STATISTICS, and `members`, the
-    number of members that have it.
+    One row per number: the swept keys, the columns OF_ROW, `number`, STATISTICS, and `members`, the
+    count of members with this number.
     """
     same = [key for key in (*keys, *OF_ROW) if key in done and key != MEMBER]
     sizes = {"peak": done["peak"].abs()} if "peak" in numbers else {}
@@ -116,10 +115,10 @@ def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.Da
 def write_ensemble(
     out: Path, numbers: pd.DataFrame, done: pd.DataFrame, keys: list[str]
 ) -> list[Path]:
-    """Write ensemble.csv, and mean and percentiles of every waveform, with their figure.
+    """Write ensemble.csv, mean and percentiles of every waveform, and their figure.
 
-    numbers : from `statistics`. done : rows of the members, with the folder of their results. keys
-    : of the sweep.
+    numbers : from `statistics`. done : rows of the members, with the folder of their results.
+    keys : of the sweep.
     """
     files = [write_csv(out / "ensemble.csv", numbers)]
     others = [key for key in keys if key != MEMBER]
@@ -132,7 +131,7 @@ def write_ensemble(
         found = {
             name: waveforms([f for folder in folders if (f := folder / f"{name}.nc").is_file()])
             for name in results
-            if name.removeprefix("exact-") in solved  # others are of earlier commands
+            if name.removeprefix("exact-") in solved  # others are from earlier commands
         }
         files += [write_dataset(place / f"{name}-ensemble.nc", x) for name, x in found.items()]
         by_solver = {name.removeprefix("exact-"): x for name, x in found.items()}
@@ -142,8 +141,8 @@ def write_ensemble(
 
 
 def waveforms(files: list[Path]) -> xr.Dataset:
-    """Return mean and percentiles over the members of every waveform, at the same times and
-    receivers in all, with `statistic` as their first dimension."""
+    """Return mean and percentiles over the members of every waveform, with `statistic` as the first
+    dimension. Members have the same times and receivers."""
     results = [load_netcdf(file).drop_encoding() for file in files]
     first = results[0]
     same = [

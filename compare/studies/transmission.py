@@ -1,18 +1,19 @@
 """Reflection and transmission of a wave at parallel joints in rock, against its angle: in closed
-form (`parallel_joints`), or read off a solver's motion in a scene of the same rock and joints.
+form (`parallel_joints`), or from a solver's motion in a scene of the same rock and joints.
 
 In that scene joints are horizontal and the wave is rotated, so that all angles have the same blocks
-and elements. The joints' exact field enters through all sides; any error is the solver's own.
+and elements. The exact field of the joints enters through all sides; any error is the solver's own.
 
-At one frequency the motion of each half-space is the sum of plane waves of one slowness p along the
-joints (`compare.exact.plane.waves`): in front of them the incident wave and both reflected ones,
-behind them both transmitted ones. With factor e^{-i omega t} and the place (x, z) from the joints,
+At one frequency the motion of each half-space is a sum of plane waves with the same slowness p
+along the joints (`compare.exact.plane.waves`): the incident and both reflected waves in front of
+the joints, both transmitted waves behind. With the factor e^{-i omega t} and coordinates (x, z)
+along and across the joints,
 
     V(x, z) = sum of A g e^{i omega (p x +- q z)},   V = int v e^{i omega t} dt
 
-is a linear system for the amplitudes A, two equations a point, solved by least squares. The speeds
-are those of the intact rock. V is the trapezium rule's sum, exact for pulses that are over within
-the record and have nothing above half its sampling frequency.
+is a linear system for the amplitudes A, two equations per point, solved by least squares. The
+speeds are those of the intact rock. V is the trapezoidal sum, exact for pulses that end within the
+record and have no content above half the sampling frequency.
 """
 
 from collections.abc import Sequence
@@ -45,18 +46,18 @@ from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.record import Answer
 
 SCENE = Path(__file__).parent / "joints.toml"
-BACK = 6.0  # m that SV waves begin before the domain, ahead of which they make P waves
-ROOM = 4.0  # m of the domain, between the receivers, that joints may fill
-RINGS = 6.0  # periods, extension of the record for waves between two joints
-RETURNS = 12.0  # S waves from joint to joint, the least extension
+BACK = 6.0  # m by which SV waves start before the domain: the P waves that they make run ahead
+ROOM = 4.0  # m between the receivers, available for joints
+RINGS = 6.0  # periods by which the record is extended for each pair of joints
+RETURNS = 12.0  # least extension, in S travel times from joint to joint
 EXACT = "exact"
 NONE = "has no transmission by angle"
 WAVES = {"R_p": "reflected P", "R_s": "reflected S", "T_p": "transmitted P", "T_s": "transmitted S"}
 
 
 class ParallelJoints(NamedTuple):
-    """Joints in the order in which a wave meets them, their spacings (m), one less, and the period
-    of the wave, s."""
+    """Parallel joints in the order in which a wave meets them, the spacings between them, m, and
+    the period of the wave, s."""
 
     rock: IntactRock
     joints: list[Joint]
@@ -76,18 +77,18 @@ def transmission(
     velocity of the reflected and transmitted P and S waves over that of the incident wave.
 
     Rock and joints are those of the scene; its domain, waves and receivers do not matter.
-    `residual` is the part of the motion that these waves do not explain, nan where none is read.
+    `residual` is the part of the motion that these waves do not explain, nan in closed form.
 
     Parameters
     ----------
     scene : as `load` takes it.
     angles : of travel from the joints' normal, degrees, 0 to below 90.
     solvers : "exact", the closed form; "dem", "continuum-jointed", ..., a run for each angle.
-    incidence : "P", or "S" or "SV", which in the plane are one.
+    incidence : "P", "S" or "SV"; the last two mean the same in the plane.
     frequency : Hz; None: one over the period of the scene's first pulse.
     progress : called with the finished fraction.
 
-    Raises SceneError for a pillar, and joints that are not linear, parallel and through all rock.
+    Raises SceneError for a pillar, and unless joints are linear, parallel and cut all the rock.
     """
     scene, wanted = load(scene), [solvers] if isinstance(solvers, str) else list(solvers)
     try:
@@ -129,8 +130,8 @@ def _require(right: bool, key: str, value: object, allowed: str) -> None:
 
 
 def _joints_of(scene: RockMass, frequency: float | None) -> ParallelJoints:
-    """Return the joints of a rock mass under a wave of a frequency, Hz, None: of the scene's first
-    pulse; raises SceneError where they are no series of joints."""
+    """Return the parallel joints of a rock mass for a frequency, Hz; None: that of the scene's
+    first pulse. Raises SceneError if joints are not in series."""
     answer = Answer.unless(
         (scene.in_space, "it is in space"),
         (not scene.joint_sets, "there is no joint"),
@@ -166,8 +167,8 @@ def closed_form(series: ParallelJoints, incidence: Kind, angle: Values) -> np.nd
 def scene_of(
     series: ParallelJoints, incidence: str, angle: float, changes: dict[str, Any] | None = None
 ) -> RockMass:
-    """Return the scene of a wave at an angle (degrees), towards x from y, at joints about the
-    middle, with dotted keys changed: that of `joints.toml`, as large as the P wave is long."""
+    """Return `joints.toml` scaled to the P wavelength, with these joints about its middle, a wave
+    at an angle (degrees from y towards x), and dotted keys changed."""
     base: Any = scenes_of(SCENE)[0]
     was, rock, thick = elastic_rock(base.rock), elastic_rock(series.rock), series.spacings.sum()
     longer = series.period / base.waves[0].period
@@ -176,7 +177,7 @@ def scene_of(
     (width, height), more = base.domain.size, max(0.0, thick - larger * ROOM)
     middle = (larger * height + more) / 2
     direction = [float(np.sin(np.radians(angle))), float(np.cos(np.radians(angle)))]
-    own = RINGS * len(series.joints) / 2 * series.period  # their modes decay with their number
+    own = RINGS * len(series.joints) / 2 * series.period  # modes of more joints decay more slowly
     rings = np.maximum(own, RETURNS * series.spacings / rock.s_speed)
     keys: dict[str, Any] = {
         "domain.size": [larger * width, 2 * middle],
@@ -209,9 +210,11 @@ def scene_of(
 
 
 def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:
-    """Return the moduli R_p, R_s at the first joint, T_p, T_s at the last one, and the part of the
-    motion that such waves do not explain, from the motion at the scene's points [m, n, (x, y)]
-    (m/s), at the frequency of its pulse."""
+    """Return the moduli R_p, R_s at the first joint, T_p, T_s at the last joint, and the part of
+    the motion that these waves do not explain, at the frequency of the scene's pulse.
+
+    velocity : at the scene's points [m, n, (x, y)], m/s.
+    """
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     omega = 2 * pi / float(wave.period or nan)
     kind: Kind = "P" if wave.kind == "P" else "SV"

@@ -1,7 +1,7 @@
 """The table, the diagram and the findings of a study: error over seconds and over counted work.
 
-A cross is a point that is more accurate than its errors or finer points imply: it does not count.
-Colours are those of models.
+A cross marks a point more accurate than its errors or finer points imply; it is excluded. Colours
+show the model.
 """
 
 import json
@@ -41,7 +41,7 @@ LEGEND = (
     "the references. Measured is the misfit from the finest physics; it does not count where "
     f"errors cancel or a finer point is worse ({CANCELS})."
 )
-#: Columns of the table, with those of `measure` and their factors.
+#: Columns of the table, each with its column of `measure` and a factor.
 COLUMNS = {
     "numerical, %": ("numerical", 100),
     "modelling, %": ("modelling", 100),
@@ -58,14 +58,14 @@ COLUMNS = {
 
 
 def key(point: StudyPoint) -> str:
-    """Return the key of a point: everything that determines its row, the files of its scene too."""
+    """Return the key of a point, from all that determines its row, including its scene's files."""
     study = point.study.model_dump(mode="json", exclude={"title", "curves"})
     scenes = [_hash_of(lambda: point.study.base), _hash_of(lambda: point.scene)]
     return store_key(study, point.curve.model_dump(mode="json"), point.settings, scenes)
 
 
 def _hash_of(scene: Callable[[], AnyScene]) -> str:
-    """Return the hash of a scene, or what is wrong with it."""
+    """Return the hash of a scene, or the error that makes it invalid."""
     try:
         return scene_hash(scene())
     except SceneError as error:
@@ -86,8 +86,8 @@ def experiment(study: Study, folder: Path) -> Experiment:
             *(Run("references", scene, name) for name, scene in references(valid)),
         ]
 
-    told, shares = partial(summarise, study, folder), (study.timed, not study.timed)
-    return Experiment(study.title, study.points(), folder, key, measure, told, runs, *shares)
+    summary, shares = partial(summarise, study, folder), (study.timed, not study.timed)
+    return Experiment(study.title, study.points(), folder, key, measure, summary, runs, *shares)
 
 
 def summarise(study: Study, folder: Path, rows: list[Row]) -> Summary:
@@ -121,7 +121,7 @@ def summarise(study: Study, folder: Path, rows: list[Row]) -> Summary:
 
 
 def shown(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the table in display units, the points of each curve under its name."""
+    """Return the table in display units, with points grouped by curve."""
     labels = table["settings"].map(_settings).replace("", "base scene")
     found = pd.DataFrame(
         {head: factor * table[column] for head, (column, factor) in COLUMNS.items()}
@@ -140,8 +140,8 @@ def _settings(settings: dict[str, Any]) -> str:
 def draw(name: str, table: pd.DataFrame, costs: dict[str, str]) -> Figure:
     """Return the diagram of a judged table: one row of axes per error, one column per cost.
 
-    costs : columns of the table, with the words for each. The curve k of row i, column j is the
-    SVG group NAME-i-j-k.
+    costs : columns of the table with their axis labels. Curve k of row i, column j is the SVG group
+    NAME-i-j-k.
     """
     errors = [error for error in ERRORS if any(len(done(table, error, cost)) for cost in costs)]
     count = table["curve"].nunique()
