@@ -1,7 +1,7 @@
-"""The scene: its vocabulary, its calibration, and the shipped scenes.
+"""The scene: its keys, its calibration, and the shipped scenes.
 
-`cases.load(path)` reads a scene file and returns one validated `Scene` per variant.
-What validates it is imported when it is asked for: a shell's completion needs none of it.
+`cases.load(path)` reads a scene file and returns one validated `Scene` per variant. Validation is
+imported on first use: a shell's completion does not need it.
 """
 
 from importlib import import_module
@@ -18,7 +18,7 @@ LAZY = dict.fromkeys(("load", "load_tables", "load_variant"), "read") | {"Scene"
 
 
 def __getattr__(name: str) -> Any:
-    """Return the class of scenes, or a function that reads them."""
+    """Import `Scene`, or a function that reads scenes, on first use."""
     if name in LAZY:
         return getattr(import_module(f"{__name__}.{LAZY[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

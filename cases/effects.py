@@ -1,4 +1,4 @@
-"""The effects of a scene; all others are not computed."""
+"""The effects that a scene calls for; engines compute no others."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -15,7 +15,7 @@ SIDES = ("quiet", "fixed", "roller", "periodic")
 SLIPS = "friction_angle or cohesion is given"
 STICKS = "neither friction_angle nor cohesion"
 
-Called = tuple[str, object, str]  #: name, why the scene has it (false: not), why it has not
+Called = tuple[str, object, str]  #: name, why the scene has it (false if not), why not otherwise
 
 
 class Effect(NamedTuple):
@@ -27,12 +27,12 @@ class Effect(NamedTuple):
 
 
 def is_spatial(scene: Scene) -> bool:
-    """Return whether a scene moves across its axis or turns its blocks; else it is axial."""
+    """Return whether a scene moves across its axis or rotates its blocks; else it is axial."""
     return off_axis(scene) is not None
 
 
 def effects(scene: AnyScene) -> list[Effect]:
-    """Return every effect that this version knows of this kind of scene, in the order of cost."""
+    """Return every known effect for this kind of scene, in the order of cost."""
     own = _of_column(scene) if scene.is_column else _of_joint_sets(scene)
     found = [*own, *_of_any(scene)]
     return [Effect(name, bool(why), str(why or why_not)) for name, why, why_not in found]
@@ -119,7 +119,7 @@ def _of_joint_sets(scene: RockMass) -> Iterator[Called]:
 
 
 def _carries(slides: bool) -> str:
-    """Return why no joint opens; slides : whether joints have friction, which bounds no tension."""
+    """Return why no joint opens; slides : whether joints have friction (no limit on tension)."""
     return "every joint carries tension" + ", also with friction" * slides
 
 
@@ -130,7 +130,7 @@ def _of_sides(scene: AnyScene, kinds: Iterable[str], noun: str) -> Iterator[Call
 
 
 def _of_any(scene: AnyScene) -> Iterator[Called]:
-    """Yield the effects of what is recorded, and those on blocks themselves."""
+    """Yield the effects that any scene may have: recording, damping of the rock, body forces."""
     record = scene.record
     yield "energy ledger", record.energy and "record.energy is on", "record.energy = false"
     every = record.fields

@@ -5,17 +5,17 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-CLOSE = 0.6  # difflib's least similarity of a name and its suggestion
+CLOSE = 0.6  # least similarity (difflib) between a name and its suggestion
 
 
 class SceneError(ValueError):
-    """A scene that cannot be simulated, a line a mistake: where, which key and value, what is
+    """A scene that cannot be simulated; one line per mistake with place, key, value and what is
     allowed.
 
     Parameters
     ----------
     where : the scene file (or other source) with the mistake.
-    key : dotted key, `pillar.length`; empty when the mistake is not in one key.
+    key : dotted key, `pillar.length`; empty if the mistake is not in one key.
     value : the value found, or None for a missing key.
     allowed : what is allowed, as a phrase.
     others : further mistakes, whose lines follow.
@@ -32,26 +32,26 @@ class SceneError(ValueError):
         super().__init__("\n".join([own, *map(str, others)]))
 
     def __reduce__(self) -> tuple:
-        """Support pickling: errors are passed from worker processes."""
+        """Support pickling: worker processes pass errors on."""
         return type(self), self._arguments
 
     @property
     def each(self) -> "list[SceneError]":
-        """The mistakes one by one, itself first."""
+        """All mistakes one by one, this one first."""
         own = SceneError(*self._arguments[:4])
         return [own, *(one for other in self._arguments[4] for one in other.each)]
 
 
 def require(value: object, kind: Any, where: str, key: str, allowed: str) -> None:
-    """Raise SceneError unless a value that a caller has given is of this type."""
+    """Raise SceneError unless a caller's value has the required type."""
     if not isinstance(value, kind):
         raise SceneError(where, key, type(value).__name__, f"must be {allowed}")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return the likely intended name as the end of a message; else an empty string.
+    """Return "; did you mean ...?" for the likely intended name, or "".
 
-    The last part of a name with folders suffices.
+    The last part of a name with folders is enough.
     """
     names = list(known)
     ends = {one.rpartition("/")[2]: one for one in reversed(names)}
@@ -62,14 +62,13 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 class UnstableError(RuntimeError):
-    """A run stopped because it exceeded its bounds; its message gives cause and time."""
+    """A run that stopped because it exceeded its bounds; the message gives cause and time."""
 
 
 class StoppedError(UnstableError):
-    """A run that could not go on; its message says why and when.
+    """A run that could not continue; the message gives cause and time.
 
-    samples : how many had been taken before. result : what was computed until then, like that of a
-        whole run; None where nothing was.
+    samples : number of samples taken before. result : the result up to then; None without any.
     """
 
     samples: int = 0
@@ -83,7 +82,7 @@ class InterruptedRun(StoppedError):
 
 
 def all_of(errors: Iterable[SceneError]) -> SceneError:
-    """Return mistakes as one error, each once, however many variants make it."""
+    """Return several errors as one, without the repetitions from variants."""
     said: dict[tuple[str, str, str], SceneError] = {}
     for one in (one for error in errors for one in error.each):
         said.setdefault((one.key, repr(one.value), one.allowed), one)
@@ -92,7 +91,7 @@ def all_of(errors: Iterable[SceneError]) -> SceneError:
 
 
 class _Found(reprlib.Repr):
-    """Values as a scene file spells them, shortened."""
+    """Shortened values, spelled as in a scene file."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -115,10 +114,10 @@ _short = _Found().repr
 
 
 def printable(text: str) -> str:
-    """Return an external text as one safe line, without control sequences.
+    """Return external text as one safe line without control sequences.
 
     Control and format characters (escape sequences, C1, DEL, direction marks) and unassigned ones
-    are spelled as Python does; any kind of space, and the end of a line, is a space.
+    are escaped as in Python; any white space becomes a space.
     """
     return text if text.isprintable() else "".join(map(_spelled, text))
 

@@ -1,4 +1,4 @@
-"""Reading of user-supplied text files, with one-phrase errors.
+"""Read user-supplied text files; errors are one phrase.
 
 The memory that a file needs is estimated from its size before it is read.
 """
@@ -11,11 +11,11 @@ from typing import Any
 
 from jointwave.cases.size import excess
 
-#: Keys of many parts: tomllib takes time cubic in their number.
+#: Dotted keys of more than 64 parts: tomllib needs time cubic in their number.
 LONG_KEY = re.compile(r"""(?<![\w"'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){64}""")
 
-#: Bytes of memory at most for each byte of a file: as text of four bytes a character, with its
-#: copies, and as what TOML and JSON make of it: a table for each `a=1`, a list for each `[],`.
+#: Most bytes of memory per byte of a file: as text of four bytes a character with its copies, as
+#: TOML with a table per `a=1`, as JSON with a list per `[],`.
 TEXT, TOML, JSON = 12, 120, 40
 SMALL = 10_000_000  # bytes: smaller files are always read
 
@@ -23,7 +23,7 @@ SMALL = 10_000_000  # bytes: smaller files are always read
 def read_bytes(path: Path, largest: int, times: int) -> bytes:
     """Return the content of a file of at most `largest` bytes.
 
-    times : bytes of memory that each of the file would take. Raises ValueError, in one phrase.
+    times : bytes of memory needed per byte of the file. Raises ValueError, in one phrase.
     """
     size = size_of(path)
     try:
@@ -40,8 +40,8 @@ def read_bytes(path: Path, largest: int, times: int) -> bytes:
 
 
 def size_of(path: Path) -> int:
-    """Return the bytes of a regular file, as a pipe would block; raises ValueError, in one phrase,
-    for anything else."""
+    """Return the size of a regular file, bytes. Raises ValueError, in one phrase, for anything
+    else: reading a pipe would block."""
     try:
         if path.is_dir():
             raise ValueError("is a directory, must be a file")
@@ -53,7 +53,7 @@ def size_of(path: Path) -> int:
 
 
 def read_text(path: Path, largest: int, times: int = TEXT) -> str:
-    """Return the text of a file as `read_bytes` reads it."""
+    """Return the text of a file; see `read_bytes`."""
     content = read_bytes(path, largest, times)
     try:
         return content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
@@ -62,7 +62,7 @@ def read_text(path: Path, largest: int, times: int = TEXT) -> str:
 
 
 def read_toml(path: Path, largest: int) -> dict[str, Any]:
-    """Return the tables of a TOML file of at most `largest` bytes; raises ValueError."""
+    """Return the tables of a TOML file of at most `largest` bytes. Raises ValueError."""
     text = read_text(path, largest, TOML)
     try:
         return parse_toml(text)
@@ -71,7 +71,7 @@ def read_toml(path: Path, largest: int) -> dict[str, Any]:
 
 
 def read_json(path: Path, largest: int) -> Any:
-    """Return the value of a JSON file of at most `largest` bytes; raises ValueError."""
+    """Return the value of a JSON file of at most `largest` bytes. Raises ValueError."""
     text = read_text(path, largest, JSON)
     try:
         return json.loads(text)
@@ -80,17 +80,17 @@ def read_json(path: Path, largest: int) -> Any:
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """Return the tables of a TOML text; raises ValueError or RecursionError."""
+    """Return the tables of a TOML text. Raises ValueError or RecursionError."""
     if LONG_KEY.search(text):
         raise ValueError("a key has more than 64 parts")
     return tomllib.loads(text)
 
 
 def beside(folder: str | Path, file: str, anywhere: bool) -> Path:
-    """Return the path of a regular file that a scene in `folder` names.
+    """Return the path of a regular file named by a scene in `folder`.
 
-    It lies in that folder or below, with links resolved, unless it may be `anywhere` (named by the
-    user). Raises ValueError, in one phrase.
+    It must lie in that folder or below, with links resolved, unless it may be `anywhere` (named by
+    the user). Raises ValueError, in one phrase.
     """
     path = Path(folder, file).absolute()
     try:
@@ -104,7 +104,7 @@ def beside(folder: str | Path, file: str, anywhere: bool) -> Path:
 
 
 def is_number(cell: str) -> bool:
-    """Return whether a cell of a table reads as a number."""
+    """Return whether a table cell reads as a number."""
     try:
         float(cell)
     except ValueError:

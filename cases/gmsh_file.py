@@ -1,4 +1,4 @@
-"""The content of a gmsh file: vertices, rock cells, and the facets of its named groups; VTU."""
+"""Read gmsh files (vertices, rock cells, facets of named groups) and VTU files."""
 
 from contextlib import redirect_stderr
 from io import StringIO
@@ -10,12 +10,12 @@ import numpy as np
 
 from jointwave.cases.size import memory, require, within
 
-#: How to get gmsh itself, and what its wheel loads of the system.
+#: How to install gmsh and the system libraries that its wheel loads.
 INSTALL = (
     "pip install gmsh; on Debian also apt install libglu1-mesa libxcursor1 libxft2 libxinerama1"
 )
 
-#: meshio's names of the kinds of cells, and of their facets.
+#: Cell types by meshio's names, and meshio's names of their facets.
 KINDS = {
     "triangle": "triangle",
     "quad": "quadrilateral",
@@ -29,7 +29,7 @@ FACET_NAMES = {
     "hexahedron": "quad",
 }
 
-#: gmsh numbers a face's corners around it: its corner at each of basix's places, and back.
+#: gmsh numbers corners around a face: gmsh's corner for each basix corner, and the reverse.
 FROM_GMSH = {
     "interval": [0, 1],
     "triangle": [0, 1, 2],
@@ -38,8 +38,8 @@ FROM_GMSH = {
     "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6],
 }
 
-#: Bytes that reading may take beside what the process has: in all, and for each byte of the file.
-#: The reader makes an array as long as the largest number of a vertex, whatever the file holds.
+#: Bytes that reading may allocate: constant, and per byte of the file. The reader makes an array
+#: as long as the largest vertex number, whatever the file holds.
 ROOM, ROOM_OF_BYTE = 300_000_000, 100
 
 KINDS_OF_FILE = {"gmsh": "a gmsh mesh, version 2.2 or 4.1", "vtu": "a VTU file of VTK"}
@@ -51,13 +51,13 @@ class MeshError(ValueError):
 
 
 class Tagged(NamedTuple):
-    """The rock of a gmsh file and its groups of facets, by name.
+    """The rock of a gmsh file and its named groups of facets.
 
-    x : float array [vertices, 3], m, all of the file.
-    kind : of the cells, "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
+    x : float array [vertices, 3], m, all vertices of the file.
+    kind : cell type: "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
     cells : int array [cells, corners], vertex numbers in basix's corner order.
-    facets : for each group "joint...", "start" and "end" int arrays [facets, facet corners], vertex
-        numbers in any order.
+    facets : for each group "joint...", "start" and "end", int arrays [facets, facet corners] of
+    vertex numbers in any order.
     """
 
     x: np.ndarray
@@ -67,10 +67,8 @@ class Tagged(NamedTuple):
 
 
 def read_tagged(path: str | Path) -> Tagged:
-    """Read a gmsh file, version 2.2 or 4.1, as text or binary; raises MeshError.
-
-    The groups whose names start with "rock" are the rock; capitals do not matter.
-    """
+    """Read a gmsh file, version 2.2 or 4.1, text or binary. Groups whose names start with "rock",
+    in any case, are the rock. Raises MeshError."""
     mesh, _ = read_file(Path(path), "gmsh")
     names = {name: name.strip().lower() for name in mesh.field_data}
     kind, cells = _rock(mesh, [name for name, plain in names.items() if plain.startswith("rock")])
@@ -86,7 +84,7 @@ def read_tagged(path: str | Path) -> Tagged:
 
 
 def read_file(path: Path, kind: str):
-    """Return a file of a kind, "gmsh" or "vtu", as meshio's mesh, and what meshio said."""
+    """Return a file of kind "gmsh" or "vtu" as meshio's mesh, and meshio's messages."""
     import meshio
 
     if not path.is_file():
@@ -107,12 +105,12 @@ def read_file(path: Path, kind: str):
 
 
 def one_line(error: Exception) -> str:
-    """Return what an error says, in one line."""
+    """Return an error's message on one line."""
     return " ".join(str(error).split()) or type(error).__name__
 
 
 def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
-    """Return the kind and the cells of the rock, in gmsh's corner order."""
+    """Return the cell type and the cells of the rock, in gmsh's corner order."""
     if not names:
         raise MeshError("has no group whose name starts with 'rock'")
     types = {block.type for block, inside in _blocks(mesh, names) if inside.any()}
@@ -135,20 +133,20 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
 
 
 def cells_of_type(mesh, names: list[str], cell: str) -> np.ndarray:
-    """Return the cells of one type in groups of these names, each once, by their vertices."""
+    """Return the distinct cells of one type in groups of these names, as vertex numbers."""
     found = [block.data[inside] for block, inside in _blocks(mesh, names) if block.type == cell]
     return _each_once(found) if found else np.empty((0, 1), dtype=np.int64)
 
 
 def _each_once(found: list[np.ndarray]) -> np.ndarray:
-    """Return cells without repetitions: version 2 of the format lists a cell for each group."""
+    """Return distinct cells: format version 2 lists a cell once per group."""
     cells = np.concatenate(found).astype(np.int64)
     first = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)[1]
     return cells[np.sort(first)]
 
 
 def _blocks(mesh, names: list[str]):
-    """Return each block of cells, with the indices of its cells in any of these groups."""
+    """Yield each block of cells and a mask of its cells in any of these groups."""
     for k, block in enumerate(mesh.cells):
         inside = np.zeros(len(block.data), dtype=bool)
         for name in names:

@@ -1,7 +1,7 @@
-"""Load histories: value, time integrals, and times where they are not smooth.
+"""Load histories: value, rate, time integrals, and the times of their kinks.
 
 All are closed forms. Units are those of an end stress, Pa and Pa s; a force or a motion has its own
-in their place.
+units instead.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ import numpy as np
 
 
 class Forms(NamedTuple):
-    """A smooth function of time, its rate, its integral, and the integral of that."""
+    """A smooth function of time, its rate, its integral, and its double integral."""
 
     rate: Callable[[Any], Any]
     value: Callable[[Any], Any]
@@ -22,18 +22,18 @@ class Forms(NamedTuple):
 
 
 class LoadHistory:
-    """A load over time: here that of smooth `forms` from t = 0 to `stop`, and zero else."""
+    """A load over time: by default smooth `forms` from t = 0 to `stop`, and zero elsewhere."""
 
     stop = inf  #: s
 
     @property
     def forms(self) -> Forms:
-        """The smooth function that the load follows, and its integrals."""
+        """The smooth function of the load, and its integrals."""
         raise NotImplementedError
 
     @property
     def end(self) -> float:
-        """Time after which it is zero, constant or hardly changes, s."""
+        """Time after which the load is zero, constant or hardly changes, s."""
         return 0.0
 
     @property
@@ -65,8 +65,8 @@ class LoadHistory:
 
 @dataclass(frozen=True)
 class Sine(LoadHistory):
-    """Cycles of p0 sin(2 pi t / T), zero before and after (Guo & Li 2002, fig. 2); 0.5 of one is
-    a half sine."""
+    """Cycles of p0 sin(2 pi t / T), zero before and after (Guo & Li 2002, fig. 2); 0.5 cycles are a
+    half sine."""
 
     amplitude: float
     period: float
@@ -93,8 +93,7 @@ class Sine(LoadHistory):
 class Ricker(LoadHistory):
     """p0 (1 - 2 a) exp(-a), a = (pi (t - 1.5 T) / T)^2: a Ricker wavelet of peak frequency 1 / T.
 
-    Centred at 1.5 T, where the part before t = 0 is below 1e-8 of the peak, and so is what is left
-    at `end`.
+    Its centre is 1.5 T; before t = 0 and after `end` it is below 1e-8 of the peak.
     """
 
     amplitude: float
@@ -127,11 +126,11 @@ class Ricker(LoadHistory):
 @dataclass(frozen=True)
 class Gabor(LoadHistory):
     """p0 exp(-s^2 / 2 b^2) cos(2 pi s / T), s = t - 6.4 b: a cosine in a Gaussian of standard
-    deviation b = cycles T / 4, so that two of them to each side hold the cycles (Gabor 1946).
+    deviation b = cycles T / 4, which contains the cycles within two b on each side (Gabor 1946).
 
-    The part before t = 0 is below 2e-9 of the peak, and so is what is left at `end`. With
-    a = 2 pi b / (T sqrt(2)), x = s / (b sqrt(2)) and Faddeeva's function w, the integral from the
-    peak to s is p0 b sqrt(pi / 2) Re erf(x - i a) exp(-a^2), and erf(z) = 1 - exp(-z^2) w(i z).
+    Before t = 0 and after `end` it is below 2e-9 of the peak. With a = 2 pi b / (T sqrt(2)), x = s
+    / (b sqrt(2)) and Faddeeva's function w, the integral from the peak to s is p0 b sqrt(pi / 2) Re
+    erf(x - i a) exp(-a^2), and erf(z) = 1 - exp(-z^2) w(i z).
     """
 
     amplitude: float
@@ -140,7 +139,7 @@ class Gabor(LoadHistory):
 
     @property
     def width(self) -> float:
-        """The standard deviation b of the envelope, s."""
+        """Standard deviation b of the envelope, s."""
         return self.cycles * self.period / 4
 
     @property
@@ -181,7 +180,7 @@ class Gabor(LoadHistory):
 
 @dataclass(frozen=True)
 class Step(LoadHistory):
-    """A stress p0 applied at t = 0 and held constant; half of it at t = 0."""
+    """A stress p0 applied at t = 0 and held; half of it at t = 0."""
 
     amplitude: float
 
@@ -203,9 +202,9 @@ class Step(LoadHistory):
 class Recorded(LoadHistory):
     """A piecewise linear history, zero outside its samples: a record, or a triangle.
 
-    `stress` is [n] Pa at `time` [n] s; `timed` says whether a file gives the unit of its times. The
-    running integral is exact, so a step of any length takes the true mean of the history and
-    nothing is lost to undersampling. The rate at a sample is that of the line to the left.
+    `stress` is [n] Pa at `time` [n] s; `timed` : whether a file gives the unit of its times.
+    Integrals are exact, so a step of any length takes the true mean, without undersampling. The
+    rate at a sample is the slope before it.
     """
 
     time: np.ndarray
@@ -229,7 +228,7 @@ class Recorded(LoadHistory):
 
     @property
     def _lines(self) -> Any:
-        """The lines between samples, as scipy's piecewise polynomial."""
+        """The segments between samples as scipy's piecewise polynomial."""
         from scipy.interpolate import PPoly
 
         slopes = np.diff(self.stress) / np.diff(self.time)
@@ -246,7 +245,7 @@ class Recorded(LoadHistory):
 
 @dataclass(frozen=True)
 class Integrated(LoadHistory):
-    """The time integral of a history: the velocity (m/s) of an acceleration."""
+    """The time integral of a history, such as the velocity (m/s) of an acceleration."""
 
     history: LoadHistory
 
@@ -270,7 +269,7 @@ class Integrated(LoadHistory):
 
 @dataclass(frozen=True)
 class Late(LoadHistory):
-    """A history that begins later, by a time in s."""
+    """A history delayed by a time in s."""
 
     history: LoadHistory
     by: float
@@ -297,8 +296,8 @@ class Late(LoadHistory):
 
 
 def triangle(amplitude: float, rise: float, decay: float) -> Recorded:
-    """Return a triangular pulse: straight up to its peak in the time `rise` (s; 0: at once), and
-    straight down in `decay` (s), as blasts are idealised."""
+    """Return a triangular pulse, as blasts are idealised: linear rise in `rise` (s; 0:
+    instantaneous), linear fall in `decay` (s)."""
     time, stress = np.array([0.0, rise, rise + decay]), amplitude * np.array([0.0, 1.0, 0.0])
     return Recorded(time, stress) if rise else Recorded(time[1:], stress[1:])
 
@@ -306,7 +305,7 @@ def triangle(amplitude: float, rise: float, decay: float) -> Recorded:
 def periodic(
     shape: str, amplitude: float, period: float, cycles: int | None
 ) -> Sine | Ricker | Gabor:
-    """Return a pulse that has a period (s): "sine", "half-sine", "ricker" or "gabor"."""
+    """Return a pulse with a period (s): "sine", "half-sine", "ricker" or "gabor"."""
     if shape == "ricker":
         return Ricker(amplitude, period)
     if shape == "gabor":

@@ -1,11 +1,11 @@
-"""Waves that enter a rock mass through its quiet sides, as tractions on them.
+"""Waves that enter a rock mass through its quiet sides, as tractions on these sides.
 
-With the outward normal n, a side that the field (v, sigma) passes has the traction
+With the outward normal n, a side crossed by the field (v, sigma) has the traction
 
     sigma n + rho a (v - v_rock)_n + rho b (v - v_rock)_s
 
-(Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969; Joyner & Chen, BSSA 65, 1975). The part
-with v_rock is the dashpot of the side; the rest, `tractions`, is known before the run.
+(Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969; Joyner & Chen, BSSA 65, 1975). The part with
+v_rock is the dashpot of the side; the rest, `tractions`, is known before the run.
 """
 
 from collections.abc import Callable
@@ -22,15 +22,15 @@ from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
 
-#: Of i and j the index of the component of a stress: of xx; xx, yy, xy; xx, yy, zz, xy, yz, xz.
+#: Index of sigma_ij among the components xx; xx, yy, xy; xx, yy, zz, xy, yz, xz.
 COMPONENT = {
     1: np.array([[0]]),
     2: np.array([[0, 2], [2, 1]]),
     3: np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]]),
 }
-AT_ONCE = 16  # points whose tractions are found together, in the cache
+AT_ONCE = 16  # points whose tractions are computed together, to stay in the cache
 BEYOND = 20  # samples on either side of the requested times
-WITHIN = 1e-6  # of a domain: from its corner to a place in the rock there
+WITHIN = 1e-6  # shift from a domain's corner into the rock, over the distance to the centre
 
 
 class WaveMotion(NamedTuple):
@@ -42,7 +42,7 @@ class WaveMotion(NamedTuple):
 
 
 class IncidentField(Protocol):
-    """A motion of the rock mass as if it had no artificial sides; it acts on all quiet sides."""
+    """Motion of the rock mass without artificial sides; it enters through all quiet sides."""
 
     def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
         """Return the motion at points [m, d] (m) and equally spaced times [n] (s)."""
@@ -58,9 +58,8 @@ def in_components(tensor: np.ndarray) -> np.ndarray:
 class PlaneWave:
     """One plane wave in rock without joints.
 
-    direction, polarisation : unit vectors. speed : m/s. through : a point that the pulse passes at
-    t = 0, m. pulse : of particle velocity along the polarisation, m/s; the integral is the
-    displacement.
+    direction, polarisation : unit vectors. speed : m/s. through : point that the pulse reaches at t
+    = 0, m. pulse : particle velocity along the polarisation, m/s; its integral is the displacement.
     """
 
     rock: ElasticRock
@@ -71,7 +70,7 @@ class PlaneWave:
     pulse: LoadHistory
 
     def lateness(self, points: np.ndarray) -> np.ndarray:
-        """Return when the pulse begins at points [m, d], s."""
+        """Return the arrival time of the pulse at points [m, d], s."""
         return (np.asarray(points) - self.through) @ self.direction / self.speed
 
     def unit_stress(self) -> np.ndarray:
@@ -90,7 +89,7 @@ class PlaneWave:
 
 @dataclass(frozen=True)
 class PlaneWaves:
-    """Plane waves that do not change each other."""
+    """Superposed plane waves."""
 
     waves: tuple[PlaneWave, ...]
 
@@ -103,13 +102,13 @@ class PlaneWaves:
 
 
 class FreeField(PlaneWaves):
-    """The waves of a scene in its intact rock, without any joint."""
+    """The waves of a scene in its intact rock without joints."""
 
 
 def free_field(scene: RockMass) -> FreeField:
     """Return the field of all waves of a scene in rock without joints.
 
-    Raises SceneError where waves meet several regions of rock, in which they do not stay plane.
+    Raises SceneError if waves cross several regions of rock, where they do not stay plane.
     """
     if scene.waves and scene.regions:
         allowed = "cross several rocks: give their field (compare.exact.rock_mass.field.field_of)"
@@ -118,12 +117,11 @@ def free_field(scene: RockMass) -> FreeField:
 
 
 def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
-    """Return a wave of a scene: its speed, where its pulse begins, and its particle velocity, in
-    the rock of the corner of the domain that it meets first.
+    """Return a wave of a scene in the rock at the domain's corner that it meets first.
 
-    Of an S wave particles move to the left of its travel, in space along the part of its
-    `polarisation` across that. Stress is that on the wave front, minus
-    sigma_nn of P and sigma_ns of S: both are impedance times velocity.
+    Particles of an S wave move to the left of its direction, in space along the part of its
+    `polarisation` normal to it. The stress on the wave front, -sigma_nn of P and -sigma_ns of S, is
+    impedance times velocity.
     """
     n, corners = np.array(wave.direction), np.array(scene.domain.corners)
     first = corners[np.argmin(corners @ n)]
@@ -138,7 +136,7 @@ def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
 
 
 def across(n: np.ndarray, wave: Wave) -> np.ndarray:
-    """Return the unit vector along which the particles of an S wave move that travels along n."""
+    """Return the polarisation of an S wave that travels along n, a unit vector."""
     if wave.polarisation is None:
         return np.array([-n[1], n[0]])
     across = np.array(wave.polarisation) - (n @ wave.polarisation) * n
@@ -146,7 +144,7 @@ def across(n: np.ndarray, wave: Wave) -> np.ndarray:
 
 
 class FaceTractions(NamedTuple):
-    """Tractions of a field on points of sides, without the dashpots' own part.
+    """Tractions of a field at points of sides, without the dashpot term of the rock's velocity.
 
     times : equally spaced [n], s. values : [n, m, d], Pa.
     """
@@ -157,12 +155,10 @@ class FaceTractions(NamedTuple):
     def at(
         self, times: np.ndarray, of: Callable[[np.ndarray], np.ndarray] = lambda values: values
     ) -> np.ndarray:
-        """Return the tractions at times of a run [k], [k, m, d] in Pa: cubic between samples.
+        """Return the tractions at times [k], s, by cubic interpolation [k, m, d], Pa.
 
-        of : what is asked for instead, a linear function of them, by samples [n, m, d].
-
-        They do not depend on which times are asked for together: what is not known of the samples
-        beyond falls by 2 - sqrt(3) with each of them.
+        of : linear function of the samples [n, m, d] to interpolate instead. Results are the same
+        for any batch of times: the influence of omitted samples falls by 2 - sqrt(3) per sample.
         """
         from scipy.interpolate import CubicSpline
 
@@ -180,7 +176,7 @@ def tractions(
     impedance: np.ndarray,
     times: np.ndarray,
 ) -> FaceTractions:
-    """Return sigma n + Z v of a field at points [m, d] of outward normals [m, d].
+    """Return sigma n + Z v of a field at points [m, d] with outward normals [m, d].
 
     impedance : Z of the dashpots there, [m, d, d], Pa s/m. times : equally spaced, s.
     """

@@ -1,6 +1,4 @@
-"""Joints at given places in intact rock (`pillar.joints`): segments without joints, and one soft
-layer where each joint stands.
-"""
+"""Joints at given places (`pillar.joints`): segments without joints, and a soft layer per joint."""
 
 import itertools
 from collections.abc import Iterator
@@ -14,16 +12,16 @@ from jointwave.cases.loads import frequency_of
 from jointwave.cases.schema.pulse import Load
 from jointwave.cases.schema.tables import CONSTANTS, SPEEDS
 
-BLOCKS = 40  # a wavelength of the load's highest frequency, where no block size is given
-WITHOUT_LOAD = 100  # blocks of the pillar where nothing acts
+BLOCKS = 40  # per wavelength of the load's highest frequency, where no block size is given
+WITHOUT_LOAD = 100  # blocks of a pillar without a load
 
 
 def spelled_out(scene: dict[str, Any], where: str, context: Any) -> dict[str, Any]:
-    """Return the tables of a pillar with `pillar.joints` in the words of segments and soft layers;
-    as they are where it is absent, or a value that it needs is none.
+    """Return the tables of a pillar with `pillar.joints` rewritten as segments and soft layers;
+    unchanged if the key is absent or a value that it needs is invalid.
 
-    where : the scene is from. context : of the validation, for files. Raises SceneError for the
-    first contradiction with other tables.
+    where : name of the scene's source. context : of the validation, for files. Raises SceneError
+    for the first contradiction with other tables.
     """
     pillar, rock, joints = (scene.get(key, {}) for key in ("pillar", "rock", "joints"))
     if not all(isinstance(one, dict) for one in (pillar, rock, joints)) or "joints" not in pillar:
@@ -79,7 +77,7 @@ def _positive(*values: Any) -> bool:
 
 
 def _whole(length: float, block: float) -> float:
-    """Return the largest thickness of equal blocks, at most this one (m), that fills a length."""
+    """Return the largest thickness of equal blocks, at most `block`, that fills a length, m."""
     return length / ceil(length / block * (1 - 1e-9))
 
 
@@ -88,6 +86,6 @@ def _block(scene: dict[str, Any], speed: float, context: Any) -> float:
     try:
         load = Load.model_validate(scene.get("load"), context=context)
         frequency = frequency_of(load, scene["time"]["duration"])
-    except (ValidationError, KeyError, TypeError, ZeroDivisionError):  # said where it stands
+    except (ValidationError, KeyError, TypeError, ZeroDivisionError):  # reported by validation
         frequency = None
     return speed / (BLOCKS * frequency) if frequency else scene["pillar"]["length"] / WITHOUT_LOAD

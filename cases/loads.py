@@ -1,8 +1,7 @@
-"""The load of a scene over time, its values at an engine's steps, and its highest frequency.
+"""The load of a scene over time, its means over time steps, and its highest frequency.
 
-Its integral is exact, so an engine applies the mean of the load over each of its steps. Units are
-those of an end stress, Pa and Pa s; the motion of a shaken base has m/s and m, or m/s2 and m/s, in
-their place.
+Integrals are exact, so an engine applies the mean of the load over each step. Units are those of an
+end stress, Pa and Pa s; for the motion of a shaken base m/s and m, or m/s2 and m/s.
 """
 
 from functools import lru_cache
@@ -26,19 +25,19 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.scene import Scene
 
-#: Part below its highest frequency of a load's energy, the integral of its square over time.
-#: A single sine cycle ends at 1.50 / T, a Ricker wavelet at 1.67 / T.
+#: Share of a load's energy (the integral of its square) below its "highest" frequency, which is
+#: 1.50 / T for a single sine cycle, 1.67 / T for a Ricker wavelet.
 SHARE = 0.95
-LEAST_BLOCKS = 10.0  #: and nodes of elements, in a wavelength that they resolve
+LEAST_BLOCKS = 10.0  #: blocks, or element nodes, that resolve a wavelength
 BINS, PADDING, MOST_CYCLES = 4096, 8, 32
 
 
 def load_history(scene: Scene) -> LoadHistory:
-    """Return the scene's load as a function of time: its end stress or the motion of its base.
+    """Return the scene's load as a function of time: the end stress or the motion of the base.
 
-    Stress is positive in compression. Without a load the stress is zero. A wave that comes up to
-    an absorbing start, a compliant base, is twice its stress, 2 rho c v: the dashpot takes half of
-    it, and the other half enters (Mejia & Dawson, 4th FLAC Symposium, 2006).
+    Stress is positive in compression. For a wave that enters an absorbing start (compliant base),
+    it is twice the wave's stress, 2 rho c v: the dashpot takes half, and half enters (Mejia &
+    Dawson, 4th FLAC Symposium, 2006).
     """
     load, amplitude = scene.load, scene.load.amplitude
     if not load.is_motion or scene.shakes_base:
@@ -48,9 +47,9 @@ def load_history(scene: Scene) -> LoadHistory:
 
 
 def block_load(scene: Scene) -> LoadHistory:
-    """Return the load as the first rigid block bears it: late by what a wave from a start that
-    absorbs takes through the intact rock before its middle; half of that by a quiet start. An
-    oblique load is late as its part along the axis."""
+    """Return the load as it acts on the first rigid block: behind an absorbing start, late by the
+    travel time through the intact rock before the block's middle; half of that behind a quiet
+    start. An oblique load is late like its axial part."""
     load, p = load_history(scene), calibrate(scene).at_start.at_rest
     part = {"matched": 0.5, "quiet": 0.25}.get(scene.ends.start, 0.0)
     impedance, modulus = p.impedance, p.intact_modulus
@@ -60,7 +59,7 @@ def block_load(scene: Scene) -> LoadHistory:
 
 
 def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:
-    """Return the velocity of a pulse of this amplitude that is one, or an acceleration."""
+    """Return a pulse as a function of time, an acceleration as its integral."""
     found = history_of(pulse, amplitude)
     return Integrated(found) if pulse.quantity == "acceleration" else found
 
@@ -82,12 +81,11 @@ def history_of(pulse: Pulse, amplitude: float) -> LoadHistory:
 def step_means(
     load: LoadHistory, dt: float, steps: np.ndarray, late: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] in equally spaced steps n [k], Pa
-    [..., k]; late : by how much the load begins later [..., 1], s.
+    """Return the mean stress over [(n - 1/2) dt, (n + 1/2) dt] at equally spaced steps n [k], Pa
+    [..., k]; late : delay of the load [..., 1], s.
 
-    This is the load that makes leapfrog exact for the bar at c dt = d: the momentum that enters
-    between two half steps is the true one. Means over consecutive steps add up to the impulse to
-    the last digit.
+    With this load leapfrog is exact for the bar at c dt = d: the momentum that enters between two
+    half steps is exact. Means over consecutive steps add up to the impulse to round-off.
     """
     if len(steps) and steps[-1] - steps[0] == len(steps) - 1:
         edges = dt * (np.append(steps, steps[-1] + 1) - 0.5)
@@ -99,10 +97,10 @@ def step_means(
 def with_load_itself(
     stress: np.ndarray, scene: Scene, sections: Interpolation, times: np.ndarray, dt: float
 ) -> np.ndarray:
-    """Return stresses (Pa) that hold the load itself where steps of dt (s) took its mean.
+    """Return stresses (Pa) in which the load itself replaces its mean over steps of dt (s).
 
-    stress : float array [section, time] along y, or [section, axis, time]. sections : between
-    contacts, of which 0 is the loaded face.
+    stress : float array [section, time] along y, or [section, axis, time]. sections : interpolation
+    between contacts; contact 0 is the loaded face.
     """
     faced = np.flatnonzero((sections.left == 0) & (sections.weight < 1.0))
     if not faced.size or scene.shakes_base or scene.load.arm is not None:
@@ -116,11 +114,11 @@ def with_load_itself(
 
 
 def with_walls(waves: dict[str, Any], scene: Scene, times: np.ndarray) -> dict[str, Any]:
-    """Return waveforms of rigid blocks with the motion before fixed ends: linear from the middle of
-    the end block to the wall.
+    """Return waveforms of rigid blocks, made linear from the middle of an end block to a fixed
+    wall.
 
-    waves : velocity, displacement and rotation [receiver, n], or along the axes [receiver, n, 3],
-    of which those beyond the middles of the end blocks are these blocks' own.
+    waves : velocity, displacement and rotation [receiver, n], or along the axes [receiver, n, 3];
+    beyond the middles of the end blocks they are those of the blocks.
     """
     centres, walls = calibrate(scene).centre_y[[0, -1]], (0.0, scene.pillar.length)
     base = velocity_of(scene.load, scene.load.amplitude if scene.shakes_base else 0.0)
@@ -139,8 +137,8 @@ def with_walls(waves: dict[str, Any], scene: Scene, times: np.ndarray) -> dict[s
 
 
 def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
-    """Return the displacement of the base that a pulse shakes in each step [n dt, (n + 1) dt],
-    n = 0 .. count - 1, m.
+    """Return the displacement of a shaken base in each step [n dt, (n + 1) dt], n = 0 .. count - 1,
+    m.
 
     A velocity history is integrated exactly over the step. An acceleration history gives, as
     leapfrog does, dt times the velocity at the half step.
@@ -154,8 +152,8 @@ def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
 class ShortestWave(NamedTuple):
     """The slowest wave that a load drives, at the load's highest frequency.
 
-    frequency : Hz. speed : m/s. blocks : how many of them a wavelength takes. cut_off : Hz, above
-    which a row of rigid blocks passes nothing.
+    frequency : Hz. speed : m/s. blocks : per wavelength. cut_off : Hz, above which a row of rigid
+    blocks transmits nothing.
     """
 
     frequency: float
@@ -165,14 +163,14 @@ class ShortestWave(NamedTuple):
 
     @property
     def reflection(self) -> float:
-        """tan(k d / 4), the reflection by a quiet end on a rigid block (Guo & Li 2002, (9))."""
+        """tan(k d / 4), the reflection from a quiet end on a rigid block (Guo & Li 2002, (9))."""
         if self.frequency >= self.cut_off:
             return 1.0
         return tan(asin(self.frequency / self.cut_off) / 2)
 
 
 def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
-    """Return the wave with the shortest wavelength under a scene's load; None without a load."""
+    """Return the shortest wave under a scene's load; None without a load."""
     frequency = highest_frequency(scene)
     if frequency is None:
         return None
@@ -184,17 +182,17 @@ def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
 
 
 def highest_frequency(scene: AnyScene) -> float | None:
-    """Return the frequency (Hz) below which 95 % of the energy of each load or wave lies.
+    """Return the frequency (Hz) below which 95 % of the energy of each load or wave lies; None
+    without.
 
-    Of a step, which never ends, of what acts until the end of the scene; of a shaken base of its
-    velocity. None where nothing acts.
+    A step is taken until the end of the scene, a shaken base by its velocity.
     """
     found = (frequency_of(one, scene.time.duration) for one in scene.pulses)
     return max((one for one in found if one is not None), default=None)
 
 
 def frequency_of(pulse: Pulse, duration: float) -> float | None:
-    """Return that of one load or wave in a scene of this duration (s)."""
+    """Return that frequency of one load or wave in a scene of this duration (s)."""
     if not pulse.amplitude:
         return None
     if pulse.history is None and (pulse.period or pulse.shape == "step"):
@@ -214,26 +212,26 @@ def frequency_of(pulse: Pulse, duration: float) -> float | None:
 
 @lru_cache
 def _at_unit_period(shape: str, cycles: int) -> float:
-    """Return the frequency of a pulse over its period, of a step over the time that it acts."""
+    """Return the frequency of a pulse times its period, or of a step times its duration."""
     load = Step(1.0) if shape == "step" else periodic(shape, 1.0, 1.0, cycles)
     return _below(*_means(load, 0.0, load.end or 1.0))
 
 
 def _means(load: LoadHistory, start: float, end: float) -> tuple[np.ndarray, float]:
-    """Return the mean of a load in each of equal bins, and their length."""
+    """Return the means of a load in equal bins, and the bin length."""
     edges = np.linspace(start, end, BINS + 1)
     length = (end - start) / BINS
     return np.diff(load.impulse(edges)) / length, length
 
 
 def _below(values: np.ndarray, length: float, energy: float = 0.0) -> float:
-    """Return the frequency below which the share of the energy lies, at most the Nyquist one.
+    """Return the frequency below which the share of the energy lies, at most the Nyquist frequency.
 
-    energy : that of the load itself, where its bins of a length (s) may have lost some.
+    energy : of the load itself, since averaging over bins of a length (s) may lose some.
     """
     count = PADDING * BINS
     power = np.abs(np.fft.rfft(values, count)) ** 2 * 2 * length / count
     power[0] /= 2
-    below = np.cumsum(power)  # up to half a line beyond each
+    below = np.cumsum(power)  # up to half a line past each frequency
     lines = (np.arange(power.size) + 0.5) / (count * length)
     return float(np.interp(SHARE * max(energy, below[-1]), below, lines))

@@ -1,4 +1,4 @@
-"""Plausible numbers of a scene, and what one far from them was likely meant to be."""
+"""Plausible values of a scene's quantities, and the likely unit of values far outside them."""
 
 from collections.abc import Iterator
 from math import atan, degrees, inf, radians
@@ -8,7 +8,7 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import SoftLayer
 from jointwave.cases.schema.law_parts import under
 
-#: Other units in which values are often given, and their factors to SI.
+#: Other common units and their factors to SI.
 Units = tuple[tuple[str, float], ...]
 OF_STRESS: Units = (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3))
 OF_STIFFNESS: Units = (("GPa/m", 1e9), ("MPa/m", 1e6), ("kPa/m", 1e3))
@@ -18,7 +18,7 @@ OF_DENSITY: Units = (("g/cm3", 1e3), ("kN/m3", 1e3 / 9.81), ("g/m3", 1e-3))
 
 
 class Usual(NamedTuple):
-    """A quantity of rock: its unit, usual range, and the range beyond which a value is suspect."""
+    """A rock quantity: unit, usual range, range beyond which a value is suspect, other units."""
 
     unit: str
     low: float
@@ -32,7 +32,7 @@ DENSITY = Usual("kg/m3", 1e3, 6e3, 500.0, 2e4, OF_DENSITY)
 SPEED = Usual("m/s", 50.0, 9e3, 20.0, 2e4, OF_SPEED)
 INTACT = Usual("Pa", 1e9, 3e11, 1e8, 3e12, OF_STRESS)
 MASS = Usual("Pa", 1e8, 3e11, 1e7, 3e12, OF_STRESS)
-LAYER = Usual("Pa", 1e7, 3e11, 1e5, 1e17, OF_STRESS)  # S K_n, of joints that may be all but rigid
+LAYER = Usual("Pa", 1e7, 3e11, 1e5, 1e17, OF_STRESS)  # S K_n; joints may be almost rigid
 STRENGTH = Usual("Pa", 1e4, 3e7, 1e3, inf, OF_STRESS)
 CLOSURE = Usual("m", 1e-6, 5e-3, 1e-8, 5e-2, OF_LENGTH)
 LENGTH = Usual("m", 1e-2, 1e3, 1e-4, 4e4, OF_LENGTH)
@@ -60,13 +60,13 @@ OF_ALL = OF_ROCK | OF_JOINTS
 POISSON = ("equivalent_poisson", "intact_poisson")
 OF_PILLAR = {"length": LENGTH, "side": LENGTH, "block": LENGTH}
 OF_PRESTRESS = {"normal": ACTING, "xx": ACTING, "yy": ACTING, "zz": ACTING}
-#: Angles (degrees) below these are rather radians, or a coefficient of friction.
+#: Angles (degrees) below these are probably radians, or friction coefficients.
 LEAST_ANGLE = {"friction_angle": 2.0, "dynamic_friction_angle": 1.0, "dilation_angle": 0.5}
 OVERDAMPED = 1.0  # damping ratio
 
 
 def implausible(scene: AnyScene) -> Iterator[str]:
-    """Yield a line for each number that lies far outside rock's, or is rather in another unit."""
+    """Yield a line for each value that is implausible for rock or probably in another unit."""
     tables: dict[str, tuple[Any, dict[str, Usual]]] = {"rock": (scene.rock, OF_ROCK)}
     tables |= {key: (law, OF_JOINTS) for key, law in scene.laws.items()}
     for table, known in (("pillar", OF_PILLAR), ("segments", OF_ALL), ("regions", OF_ALL)):
@@ -94,14 +94,14 @@ def implausible(scene: AnyScene) -> Iterator[str]:
 
 
 def of_value(key: str, value: float | None, usual: Usual, others: str = "rock's") -> Iterator[str]:
-    """Yield a line where a value, not zero, lies far outside what is usual."""
+    """Yield a line if a nonzero value is outside the limits of plausibility."""
     if value and not usual.least <= value <= usual.most:
         side = "below" if value < usual.least else "above"
         yield f"{key} = {value:g} {usual.unit} is far {side} {others}{meant(value, usual)}"
 
 
 def _of_law(table: str, law: Any) -> Iterator[str]:
-    """Yield slips in angles and ratios."""
+    """Yield lines about angles and ratios that are probably in another unit."""
     for key, least in LEAST_ANGLE.items():
         if (value := getattr(law, key)) and value < least:
             yield (
@@ -114,14 +114,14 @@ def _of_law(table: str, law: Any) -> Iterator[str]:
 
 
 def of_dip(key: str, dip: float) -> Iterator[str]:
-    """Yield a line where a dip is rather in radians: below a right angle of them, and no multiple
-    of a quarter of a degree, as degrees are given."""
+    """Yield a line if a dip is probably in radians: at most a right angle in radians, and no
+    multiple of a quarter degree."""
     if 0 < abs(dip) <= radians(90.01) and dip % 0.25:
         yield f"{key} = {dip:g} degrees: {dip:g} rad is {degrees(dip):.4g} degrees"
 
 
 def _of_sources(scene: AnyScene) -> Iterator[str]:
-    """Yield loads and waves in other units, of a table by its peak."""
+    """Yield lines about loads and waves in other units; a table counts by its peak."""
     usual = {"stress": ACTING, "incident-stress": ACTING, "velocity": MOTION}
     for table, one in scene.sources.items():
         peak = 1.0 if one.history is None else float(abs(one.history.stress).max())
@@ -132,7 +132,7 @@ def _of_sources(scene: AnyScene) -> Iterator[str]:
 
 
 def meant(value: float, usual: Usual) -> str:
-    """Return a value in the unit in which it would be usual for rock; empty if there is none."""
+    """Return a value in the other unit in which it would be usual for rock, or ""."""
     for unit, factor in usual.others:
         if usual.low <= value * factor <= usual.high:
             return f": {value:g} {unit} is {value * factor:.4g} {usual.unit}"

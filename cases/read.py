@@ -1,4 +1,4 @@
-"""From a TOML file to validated scenes: overrides, variants, and errors, a line a mistake.
+"""Read a TOML file into validated scenes: overrides, variants, and one error line per mistake.
 
 A file with [pillar] holds a `Scene`, one with [domain] a `RockMass`.
 """
@@ -16,7 +16,7 @@ from jointwave.cases.schema.values import CONTROL
 from jointwave.cases.validate import validated
 
 LARGEST_FILE = 10_000_000  # bytes; a scene is a page of text
-#: It names a folder, next to the names of the scene's own results.
+#: A variant names a folder next to the scene's own result files.
 VARIANT_NAME = re.compile(
     r"(?!.*(\.nc|\.pvd|\.bp|-fields)$)[^/\\.\s\x00-\x1f][^/\\\x00-\x1f]{0,79}", re.IGNORECASE
 )
@@ -31,8 +31,8 @@ MOST_VARIANTS = 1000
 def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyScene]:
     """Read a scene file: the scene itself, then its variants, each validated on its own.
 
-    `overrides` maps dotted keys to values (`--set`) and holds for every variant.
-    Raises SceneError, a line a mistake, for anything that cannot be simulated.
+    `overrides` maps dotted keys to values (`--set`) for every variant. Raises SceneError, one line
+    per mistake, for anything that cannot be simulated.
     """
     tables = _of_file(path, overrides)
     scenes: list[AnyScene] = []
@@ -54,8 +54,7 @@ def load(path: str | Path, overrides: dict[str, Any] | None = None) -> list[AnyS
 def load_variant(
     path: str | Path, name: str = "", overrides: dict[str, Any] | None = None, asked: bool = True
 ) -> AnyScene:
-    """Read one variant of a scene file, whatever the others are; the empty name is the scene as it
-    stands.
+    """Read one variant of a scene file without validating the others; "" is the scene itself.
 
     asked : whether the user gave the overrides, which may then name files anywhere.
     """
@@ -65,7 +64,7 @@ def load_variant(
 def load_tables(
     tables: dict[str, Any], name: str = "", overrides: dict[str, Any] | None = None
 ) -> AnyScene:
-    """Return one variant of a scene whose file would hold these tables, or which a result holds.
+    """Return one variant of a scene from the tables of its file, or of a result.
 
     Files that it names lie in the working folder or below.
     """
@@ -73,9 +72,9 @@ def load_tables(
 
 
 class _Tables:
-    """The tables of a scene, which are changed, and of its variants, and the overrides of each.
+    """The tables of a scene and its variants, and the overrides of each.
 
-    asked : whether the user gave these himself.
+    asked : whether the user gave the overrides.
     """
 
     def __init__(
@@ -92,7 +91,7 @@ class _Tables:
         self.asked = frozenset(overrides if asked else ())
 
     def named(self, name: str) -> AnyScene:
-        """Return the variant of a name; the empty name is the scene itself."""
+        """Return the variant with a name; "" is the scene itself."""
         names = [variant.get("name") for variant in self.variants]
         if name and name not in names:
             known = sorted(map(str, names))
@@ -101,7 +100,7 @@ class _Tables:
         return self.scene(names.index(name) if name else -1)
 
     def scene(self, index: int) -> AnyScene:
-        """Return a variant by its number; -1 is the scene itself."""
+        """Return the variant with an index; -1 is the scene itself."""
         table, key = dict(self.base), f"variants[{index}]." if index >= 0 else ""
         for parts, value in _leaves(self.variants[index], table) if key else ():
             _assign(table, parts, value, key + ".".join(parts), self.path)
@@ -125,8 +124,8 @@ def _of_file(path: str | Path, overrides: dict[str, Any] | None, asked: bool = T
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Parse `key=value`, its parts with or without quotes; the value is read as TOML and, failing
-    that, as a plain string."""
+    """Parse `key=value`; parts of the key may be quoted, and a value that is not TOML is a
+    string."""
     key, equals, value = text.partition("=")
     key = re.sub("[\"']", "", key)
     if not equals or not key.strip():
@@ -138,7 +137,7 @@ def parse_override(text: str) -> tuple[str, Any]:
 
 
 def _leaves(changes: dict[str, Any], base: Any, above: tuple[str, ...] = ()) -> Iterator[tuple]:
-    """Yield what a table changes in another, by the names of the tables and keys down to it."""
+    """Yield the changes that a table makes to another as (names down to the key), value."""
     for name, value in changes.items():
         old = base.get(name) if isinstance(base, dict) else None
         if isinstance(value, dict) and (value or isinstance(old, dict)):
@@ -153,7 +152,7 @@ def _override(table: dict[str, Any], overrides: dict[str, Any], path: Path) -> N
 
 
 def _assign(table: dict[str, Any], parts: Iterable[str], value: Any, key: str, path: Path) -> None:
-    """Set a key below tables; the 0 of `soft_layers.0.y` is a place in a list of tables."""
+    """Set a key in nested tables; the 0 of `soft_layers.0.y` is an index into a list."""
     at: Any = table
     *parents, last = parts
     for parent in parents:
@@ -166,7 +165,7 @@ def _assign(table: dict[str, Any], parts: Iterable[str], value: Any, key: str, p
 
 
 def _place(at: Any, part: str, key: str, value: Any, path: Path) -> Any:
-    """Return a part of a key as used in a table or list: a name, or a valid index."""
+    """Return one part of a key as a table's name or a valid list index."""
     if isinstance(at, dict):
         return part
     if not part.isdecimal() or int(part) >= len(at):

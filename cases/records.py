@@ -1,11 +1,11 @@
-"""Records of others: columns of numbers over one time, from a text table or a seismogram.
+"""External records: columns of numbers over one time, from a text table or a seismogram.
 
-The one reader of loads from files, of curves to compare with and of recorders. The content of a
-file decides how it is read, not its name.
+The only reader of load files, curves for comparison and recorders. The content of a file, not its
+name, decides its format.
 
-A table has a semicolon, tab, comma or blanks between its cells, decimal points or commas, and
-comments after #. Of the lines before its numbers, comments included, the last with a cell for each
-column names them, each with its unit (`cases.units`), or with a row of units below.
+A table has a semicolon, tab, comma or blanks between cells, decimal points or commas, and comments
+after #. The last line before the numbers, comments included, with one cell per column names the
+columns, each with its unit (`cases.units`), or with a row of units below.
 """
 
 import csv
@@ -26,24 +26,24 @@ from jointwave.cases.seismogram import FORMATS, format_of, read_traces
 from jointwave.cases.units import KNOWN, TIME, split_unit, units_of
 
 LARGEST_FILE = 200_000_000  # bytes; some ten million samples
-SPREAD = 16  # bytes of memory for each of a file's: `0,0` as two numbers, compressed samples
+SPREAD = 16  # bytes of memory per byte of a file: `0,0` makes two numbers; samples are compressed
 LARGEST = 1e30  # larger numbers are mistakes, and their squares overflow
-HEAD = 100_000  # bytes in which the numbers of a table begin
+HEAD = 100_000  # bytes within which the numbers of a table must begin
 SEPARATORS = (";", "\t", ",", " ")
 COMMENT = re.compile(r"^\s*#|#(?=\s|$)")  # before the numbers, where names may contain #
 BRACKETED = re.compile(r"[\[(]([^\[\]()]*)[\])]")
-DIMENSIONLESS = ("-", "1", "counts")  # of a load, whose amplitude has the unit
+DIMENSIONLESS = ("-", "1", "counts")  # allowed for a load, whose amplitude has the unit
 
 
 class Column(NamedTuple):
-    """The numbers of one column [n] in the file's unit; nan for an empty cell, unit "" for none."""
+    """One column [n] in the file's unit; NaN for an empty cell, unit "" for none."""
 
     name: str
     unit: str
     values: np.ndarray
 
     def si(self, units: dict[str, float]) -> np.ndarray:
-        """Return the numbers in SI; raises ValueError for a unit that is not one of `units`."""
+        """Return the values in SI. Raises ValueError for a unit that is not in `units`."""
         if self.unit and self.unit not in units:
             allowed = f"must be {', '.join(units)}"
             raise ValueError(f"unit of {self.name} = {self.unit!r}: {allowed}")
@@ -51,20 +51,18 @@ class Column(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """A file's columns over one time."""
+    """The columns of a file over one time."""
 
     time: Column
     rest: list[Column]
 
 
-Where = Callable[[int], str]  #: says where in a file a sample is
+Where = Callable[[int], str]  #: names the place of a sample in a file
 
 
 def read_history(path: Path, quantity: str, in_space: bool = False) -> Recorded:
-    """Return the history of a load in a file, in SI by its quantity, in the plane or in space.
-
-    Raises ValueError, in one line, when there is nothing to read or it is not a history.
-    """
+    """Return a load history from a file in SI; its quantity, in the plane or in space, sets the
+    units. Raises ValueError, in one line, if the file does not hold a history."""
     time, rest = read_columns(path, gaps=False, begins=False)
     if len(rest) != 1:
         names = _listed([one.name for one in (time, *rest)])
@@ -83,10 +81,10 @@ def read_columns(
 ) -> Columns:
     """Return the columns of a text table or a seismogram.
 
-    time_name : the header of the times; without "time" it is "t", or of two columns the first.
-    least : number of samples. gaps : whether cells may be empty. begins : whether a seismogram does
-    at the time of its own clock, else at t = 0. Raises ValueError, in one phrase with line, value
-    and what is allowed.
+    time_name : header of the times; "time" also accepts "t", or the first of two columns. least :
+    number of samples. gaps : whether cells may be empty. begins : whether a seismogram begins at
+    its own clock's time, else at t = 0. Raises ValueError, in one phrase with line, value and what
+    is allowed.
     """
     content = read_bytes(path, LARGEST_FILE, SPREAD)
     where: Where
@@ -173,7 +171,7 @@ def _of_text(content: bytes, time_name: str) -> tuple[Columns, Where]:
         Column(*((name.strip(), unit) if unit else split_unit(name)), frame[i].to_numpy())
         for i, (name, unit) in enumerate(zip(names, units, strict=True))
     ]
-    if len(columns) > 2:  # without those of separators at the end of each line
+    if len(columns) > 2:  # without the empty column of a separator at the end of each line
         columns = [one for one in columns if one.name or not np.isnan(one.values).all()]
     only = len(columns) == 2 and time_name == "time"
     at = _times([one.name for one in columns], time_name) or [0] * only
@@ -185,7 +183,7 @@ def _of_text(content: bytes, time_name: str) -> tuple[Columns, Where]:
 
 
 def _first_row(lines: list[str]) -> tuple[int, str, list[str]]:
-    """Return the first line that is a row of numbers, the separator of its cells, and these."""
+    """Return the index of the first row of numbers, its separator, and its cells."""
     for i, line in enumerate(lines):
         for separator in SEPARATORS:
             cells = _cells(line.partition("#")[0], separator)
@@ -196,7 +194,7 @@ def _first_row(lines: list[str]) -> tuple[int, str, list[str]]:
 
 
 def _cells(line: str, separator: str) -> list[str]:
-    """Return the cells of a line; brackets, a receiver's place, and units after a comma stay."""
+    """Return the cells of a line, unsplit in brackets, receiver places and units after a comma."""
     if separator == " ":
         parts = re.split(r"(?<!,)\s+(?![\[(])", line.strip())
     else:
@@ -217,7 +215,7 @@ def _cells(line: str, separator: str) -> list[str]:
 def _header(
     before: list[str], separator: str, cells: list[str], time_name: str
 ) -> tuple[list[str], list[str]]:
-    """Return the columns' headers, and what a row of units below them gives, "" for nothing."""
+    """Return the headers of the columns, and the units in a row below them, "" for none."""
     size, below = len(cells), list[tuple[int, list[str]]]()
     none = [""] * size
     for number, line in reversed(list(enumerate(before, 1))):
@@ -253,7 +251,7 @@ def _header(
 
 
 def _units_of(number: int, row: list[str]) -> list[str]:
-    """Return the units in a row between header and numbers; raises ValueError for what is none."""
+    """Return the units in a row below the header. Raises ValueError for an unknown unit."""
     units = [cell.strip("[]() ") for cell in row]
     for one in filter(None, units):
         if one not in (*KNOWN, *DIMENSIONLESS) and not is_number(one.replace(",", ".")):
@@ -262,8 +260,8 @@ def _units_of(number: int, row: list[str]) -> list[str]:
 
 
 def _row_of(text: str, separator: str, size: int, time_name: str) -> list[str]:
-    """Return the cells of a line before the numbers, by their separator; by another one where
-    only that gives a header of this size."""
+    """Return the cells of a line before the numbers, split at the given separator, or at another if
+    only this gives a header of the given size."""
     rows = [_cells(text, one) for one in (separator, *SEPARATORS)]
     for i, row in enumerate(rows):
         if len(row) == 2 * size and all(cell in KNOWN for cell in row[1::2]):  # time, s, load, Pa
@@ -274,14 +272,14 @@ def _row_of(text: str, separator: str, size: int, time_name: str) -> list[str]:
 
 
 def _times(names: list[str], time_name: str) -> list[int]:
-    """Return which columns are named as times."""
+    """Return the indices of columns named as times."""
     bare = [split_unit(name)[0].lower() for name in names]
     found = [i for i, name in enumerate(bare) if name == time_name]
     return found or [i for i, name in enumerate(bare) if (name, time_name) == ("t", "time")]
 
 
 def _fault(data: bytes, first: int, separator: str, decimal: str, names: list[str]) -> str:
-    """Return what is wrong with the first row that is not numbers; "" where all are."""
+    """Return the error in the first row that is not numbers; "" if all rows are."""
     for number, line in enumerate(io.BytesIO(data), first):
         cells = _cells(line.decode(errors="replace").rstrip("\n"), separator)
         if len(cells) != len(names) and (any(cells) or len(cells) > len(names)):

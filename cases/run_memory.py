@@ -1,7 +1,7 @@
-"""Memory of a run, estimated before any of it is allocated.
+"""The memory of a run, estimated before any of it is allocated.
 
-Each engine estimates what its arrays take, from the numbers of blocks, samples and steps alone, by
-the key of the scene that decides it. A run is refused where the sum is beyond `memory()`.
+Each engine estimates its arrays from the numbers of blocks, samples and steps, by the scene key
+that sets each part. A run is refused if the sum exceeds `memory()`.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,21 +14,21 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.size import LARGEST_VARIABLE, excess, spoken
 
-#: Bytes a step for the load's mean over it, and what that is made of; its history is table.
+#: Bytes per step for the load's mean and its intermediate arrays, by formula and by table.
 LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
-LEDGER = 5  # terms of an energy ledger, at least
-#: Copies of a waveform in memory: as sampled, and as written.
+LEDGER = 5  # least number of terms of an energy ledger
+#: Copies of a waveform in memory: sampled, and written.
 COPIES = 2
 
 
-#: Where estimates go meanwhile, for those who only want to know them.
+#: Collects the estimates inside `estimates`.
 _asked: ContextVar[dict[str, float] | None] = ContextVar("_asked", default=None)
 
 
 @contextmanager
 def estimates() -> Iterator[dict[str, float]]:
-    """Collect the memory of the parts of a run (bytes, by the key that decides them) in the
-    checks before it: of several checks of one key the largest."""
+    """Collect the memory of the parts of a run (bytes, by the key that sets them) from the checks
+    made in this context; of several checks of one key the largest."""
     parts: dict[str, float] = {}
     token = _asked.set(parts)
     try:
@@ -38,7 +38,7 @@ def estimates() -> Iterator[dict[str, float]]:
 
 
 def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
-    """Raise SceneError where a run's parts, bytes by the key that decides them, are too large."""
+    """Raise SceneError if the parts of a run (bytes by the key that sets them) are too large."""
     if (asked := _asked.get()) is not None:
         asked.update({key: max(size, asked.get(key, 0.0)) for key, size in parts.items()})
     key = max(parts, key=lambda k: parts[k])
@@ -47,16 +47,14 @@ def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
 
 
 def value_of(scene: Any, key: str) -> object:
-    """Return the value of a dotted key of a scene."""
+    """Return the value of a scene's dotted key, for messages."""
     found = reduce(getattr, key.split("."), scene)
     return f"{len(found):,} places" if isinstance(found, list) else found
 
 
 def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
-    """Return the memory of waveforms and ledger (bytes), written copies included.
-
-    Raises SceneError where one of them would not fit a file.
-    """
+    """Return the memory of waveforms and energy ledger, written copies included, bytes. Raises
+    SceneError if a waveform does not fit into a file."""
     if scene.is_column:
         axes = 3 if spatial else 1
         of_place = {
@@ -84,13 +82,13 @@ def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
 
 
 def load_bytes(scene: AnyScene, steps: float) -> float:
-    """Return the memory of the loads of this many steps (bytes)."""
+    """Return the memory of the loads over this many steps, bytes."""
     tables = [one.history is not None for one in scene.pulses]
     return steps * sum(TABLE_OF_STEP if table else LOAD_OF_STEP for table in tables)
 
 
 def snapshot_bytes(scene: AnyScene, nodes: float, values: float = 7) -> float:
-    """Return the memory of snapshots of this many nodes, with so many values of each (bytes)."""
+    """Return the memory of snapshots of this many nodes with this many values each, bytes."""
     if (fields := scene.record.fields) is None:
         return 0.0
     return (scene.time.duration / fields + 1) * nodes * values * 8 * COPIES

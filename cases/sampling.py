@@ -1,4 +1,4 @@
-"""Samples of a run: their times, the step that fits them, and interpolation."""
+"""Sampling of a run: sample times, a time step that divides the interval, and interpolation."""
 
 from math import ceil
 from typing import NamedTuple
@@ -8,11 +8,11 @@ import numpy as np
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 
-MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; beyond it a mistake
+MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; more is taken for a mistake
 
 
 class Clock(NamedTuple):
-    """A step that divides the sampling interval.
+    """A time step that divides the sampling interval.
 
     dt : s; stride : steps per sample; samples : number of samples, the first at t = 0.
     """
@@ -23,7 +23,7 @@ class Clock(NamedTuple):
 
     @property
     def steps(self) -> int:
-        """Steps from the first to the last sample."""
+        """Number of steps from the first to the last sample."""
         return self.stride * (self.samples - 1)
 
     @property
@@ -33,7 +33,7 @@ class Clock(NamedTuple):
 
 
 def sample_times(scene: AnyScene) -> np.ndarray:
-    """Return the times at which a scene is sampled [n], s."""
+    """Return the sample times of a scene [n], s."""
     count = int(scene.time.duration / scene.interval + 1e-9) + 1
     return scene.interval * np.arange(count)
 
@@ -41,10 +41,10 @@ def sample_times(scene: AnyScene) -> np.ndarray:
 def clock(
     scene: AnyScene, critical: float, fraction: float, allow_unstable: bool, key: str
 ) -> Clock:
-    """Return the largest step at most `fraction * critical` (s) that divides the interval.
+    """Return the largest time step up to `fraction * critical` (s) that divides the interval.
 
-    Above the critical step the step is taken as asked for, to the nearest divisor of the interval,
-    and refused with both numbers unless it is allowed.
+    A step above the critical one is rounded to the nearest divisor instead, if it is allowed; else
+    SceneError is raised with both numbers.
     """
     wanted, own = fraction * critical, f"numerics.{key}.step_fraction"
     if fraction > 1 and not allow_unstable:
@@ -74,10 +74,8 @@ class Interpolation(NamedTuple):
 
 
 def interpolation(nodes: np.ndarray, places: list[float]) -> Interpolation:
-    """Return how values at sorted `nodes` [n] (m) are read at `places` (m).
-
-    Beyond the outermost nodes the outermost value holds.
-    """
+    """Return the interpolation from sorted `nodes` [n] (m) to `places` (m); beyond the outermost
+    nodes the outermost value holds."""
     at = np.asarray(places, dtype=float)
     right = np.clip(np.searchsorted(nodes, at - 1e-9 * nodes[-1]), 1, max(1, len(nodes) - 1))
     left = right - 1

@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from jointwave.cases.schema.rock_mass import RockMass
     from jointwave.cases.schema.scene import Scene
 
-AnyScene: TypeAlias = "Scene | RockMass"  # a text: to import it costs nothing
+AnyScene: TypeAlias = "Scene | RockMass"  # a string, so that nothing is imported
 Either = TypeVar("Either", bound="AnyScene")
 
 
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:
-    """Return a scene that is a pillar; raises SceneError of a rock mass.
+    """Return a scene that is a pillar. Raises SceneError for a rock mass.
 
-    what : accepts pillars only, in words.
+    what : the feature that accepts pillars only, for the message.
     """
 
     if scene.is_column:

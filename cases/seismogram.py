@@ -1,4 +1,4 @@
-"""Seismograms, SAC, miniSEED, SEG-2 and SEG-Y, read by ObsPy."""
+"""Seismograms (SAC, miniSEED, SEG-2 and SEG-Y), read by ObsPy."""
 
 import io
 from collections.abc import Callable
@@ -8,42 +8,42 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-#: By ObsPy's names. Its own search for a format would also unpickle a file.
+#: ObsPy's names. Its own format detection would also unpickle a file.
 FORMATS = ("SAC", "MSEED", "SEG2", "SEGY")
-#: When a trace begins on its own clock, s, where its format has one.
+#: Start time of a trace on its own clock, s, for formats that have one.
 BEGIN: dict[str, Callable[[Any], float]] = {
     "SAC": lambda stats: stats.sac.get("b") or 0.0,
     "SEG2": lambda stats: float(stats.seg2.get("DELAY", 0)),
     "SEGY": lambda stats: 1e-3 * stats.segy.trace_header.delay_recording_time,
 }
-SAC_ERROR = 0.01  # of the interval that B, E and NPTS of a SAC file give
+SAC_ERROR = 0.01  # tolerated relative error of DELTA against B, E and NPTS of a SAC file
 
 
 def format_of(content: bytes) -> str:
-    """Return the format of a seismogram; "" for what is none."""
+    """Return the format of a seismogram; "" for other content."""
     for form in FORMATS:
         (check,) = entry_points(group=f"obspy.plugin.waveform.{form}", name="isFormat")
         try:
             if check.load()(io.BytesIO(content)):
                 return form
-        except Exception:  # of a dozen kinds
+        except Exception:  # readers raise a dozen kinds
             continue
     return ""
 
 
 def read_traces(content: bytes, form: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the times of a seismogram's samples on its own clock [n], s, from B of SAC, DELAY of
-    SEG-2 or the delay of SEG-Y on, else from zero; and the samples by channel [n].
+    """Return the sample times of a seismogram [n], s, and the samples by channel [n].
 
-    Raises ValueError, in one phrase, for gaps, and where its header contradicts itself.
+    Times start at B of SAC, DELAY of SEG-2 or the delay of SEG-Y, else at zero. Raises ValueError,
+    in one phrase, for gaps or a header that contradicts itself.
     """
     import obspy
 
     try:
-        with catch_warnings():  # of how SAC rounds its steps
+        with catch_warnings():  # about SAC's rounded sampling intervals
             simplefilter("ignore")
             traces = list(obspy.read(io.BytesIO(content), format=form))
-    except Exception:  # of a dozen kinds, for a damaged file
+    except Exception:  # a damaged file raises any of a dozen kinds
         raise ValueError(f"cannot be read as {form}") from None
     named = {one.stats.channel or str(i): one for i, one in enumerate(traces, 1)}
     every = [(one.stats, BEGIN.get(form, lambda stats: 0.0)(one.stats)) for one in traces]

@@ -17,7 +17,7 @@ GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_by
 
 
 def memory() -> float:
-    """Return the bytes that a run may use: JOINTWAVE_MEMORY, else the machine's memory."""
+    """Return the memory available to a run, bytes: JOINTWAVE_MEMORY, else that of the machine."""
     asked = os.environ.get(LIMIT)
     if asked is None:
         return _of_machine()
@@ -42,9 +42,9 @@ def _of_machine() -> float:
 
 
 def excess(size: float, part: str = "") -> str:
-    """Return in words how many bytes are more than a run may use; empty where they are not.
+    """Return a message if a size (bytes) exceeds the available memory, else "".
 
-    part : what of them the message is about, in words.
+    part : phrase about the part of it that the message concerns.
     """
     if size <= (limit := memory()):
         return ""
@@ -53,14 +53,14 @@ def excess(size: float, part: str = "") -> str:
 
 
 def require(size: float, what: str) -> None:
-    """Raise MemoryError for more bytes than a run may take."""
+    """Raise MemoryError if a size (bytes) exceeds the available memory."""
     if why := excess(size):
         raise MemoryError(f"{what} {why}")
 
 
 @contextmanager
 def within(room: float) -> Iterator[None]:
-    """Make allocations beyond this many bytes raise MemoryError, if the system supports it."""
+    """Make allocations beyond this many further bytes raise MemoryError, where supported."""
     try:
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     except OSError:
@@ -76,5 +76,5 @@ def within(room: float) -> Iterator[None]:
 
 
 def spoken(size: float) -> str:
-    """Return bytes in words."""
+    """Return a number of bytes as text."""
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"

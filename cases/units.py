@@ -1,4 +1,4 @@
-"""Units of measured quantities, and how headers of columns spell them."""
+"""Units of measured quantities, and their spelling in column headers."""
 
 import re
 from math import pi
@@ -30,7 +30,7 @@ KNOWN = {unit: factor for units in EVERY for unit, factor in units.items()}
 
 
 def units_of(quantity: str, in_space: bool) -> dict[str, float]:
-    """Return the units of a load's quantity, each with its factor to SI, that of SI first."""
+    """Return the units of a load's quantity with their factors to SI, the SI unit first."""
     if quantity == "force" and in_space:
         return FORCE
     return UNITS[quantity.removeprefix("incident-")]
@@ -40,8 +40,8 @@ def _any_of(units: list[str]) -> str:
     return "|".join(map(re.escape, sorted(units, key=len, reverse=True)))
 
 
-#: A unit without brackets; one of SI may end a name after a blank or _, `8 ms` is a time, and N is
-#: the north.
+#: A unit without brackets. Only units other than SI may follow a blank or _; `8 ms` is a time, and
+#: N is the north.
 _SEPARATED = re.compile(
     rf"(.*?\S)(?:\s*[,/]\s*|\sin\s)({_any_of([one for one in KNOWN if one != 'N'])})"
     rf"|(.*?\S)(?:_|(?<!\d)\s)({_any_of([one for one, factor in KNOWN.items() if factor != 1])})"
@@ -50,7 +50,7 @@ _SEPARATED = re.compile(
 
 def split_unit(text: str) -> tuple[str, str]:
     """Return name and unit of `name [unit]`, `name (unit)`, `name, unit`, `name / unit` or
-    `name_unit`; without brackets only known units are. The unit is empty without one."""
+    `name_unit`, unit "" without one; without brackets the unit must be a known one."""
     text = text.strip()
     for opening, closing in ("[]", "()"):
         if text.endswith(closing) and opening in text:

@@ -1,4 +1,4 @@
-"""Validation of a scene's tables by its model; a mistake is one line."""
+"""Validate a scene's tables against its model; each mistake is one line."""
 
 import re
 from itertools import islice
@@ -17,9 +17,9 @@ from jointwave.cases.schema.keys import model_in
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
-PLACE = re.compile(r"\.\d+(?=\.)")  # in a list of tables, as in `waves.0.file`
+PLACE = re.compile(r"\.\d+(?=\.)")  # an index into a list of tables, as in `waves.0.file`
 
-#: Allowed values, by pydantic's type of error.
+#: Message about allowed values for each pydantic error type.
 ALLOWED = {
     "contradiction": "{allowed}",
     "extra_forbidden": "unknown key; allowed: ",
@@ -43,9 +43,9 @@ ALLOWED = {
 
 
 def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
-    """Return a table as a scene; given : the keys, of tables too, that the user gave himself.
+    """Return a table as a scene; given : keys and tables that the user gave directly.
 
-    Raises SceneError, a line a mistake, where it is none.
+    Raises SceneError, one line per mistake, for an invalid scene.
     """
     asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
@@ -88,8 +88,8 @@ def _error(where: str, first: Any, model: Any) -> SceneError:
 
 
 def checked(scene: Either) -> Either:
-    """Return a scene; raises SceneError, a line a contradiction, where its tables do not fit
-    together: the first that each rule finds. What stops a rule after one is its consequence."""
+    """Return a scene. Raises SceneError, one line per contradiction, if its tables contradict each
+    other: the first that each rule finds. An exception in a rule after that is its consequence."""
     own: Any = pillar
     if not scene.is_column:
         from jointwave.cases.checks import rock_mass as own  # with shapely

@@ -1,1 +1,1 @@
-"""Contradictions between the tables of a scene whose tables are each right."""
+"""Contradictions between tables of a scene that are each valid."""

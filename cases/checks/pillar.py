@@ -14,8 +14,8 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import CLOSE
 from jointwave.cases.schema.tables import PAIRS, check_given_once
 
-#: Forces that depend on velocity or history, for which drifts backwards in time are wrong, and
-#: motion that only leapfrog supports.
+#: Forces that depend on velocity or history, which exclude the backward drifts of PEFRL, and motion
+#: that only leapfrog supports.
 BEYOND = (
     "dashpots",
     "mass damping",
@@ -26,13 +26,13 @@ BEYOND = (
     "shaken base",
     "spatial motion",
 )
-#: Keys of joints that a layer meshed as rock does not take: its shear stiffness is half of K_n.
+#: Joint keys that a layer meshed as rock cannot have: its shear stiffness is half of K_n.
 OF_JOINTS = ["shear_stiffness", "tension", "friction_angle", "cohesion"]
 OF_JOINTS += [part.keys[0] for part in PARTS]
 
 
 def rules(scene: Scene) -> list[Iterator[Wrong]]:
-    """Return the rules of a pillar whose tables are each right."""
+    """Return the rules for a pillar whose tables are each valid."""
     every = (
         _of_segments,
         _of_places,
@@ -55,7 +55,7 @@ def _of_layers(scene: Scene) -> Iterator[Wrong]:
     if not scene.soft_layers:
         return
     pillar, seen, joints = scene.pillar, set(), block_ends(scene)[1:-1]
-    loose = scene.scatter is not None and scene.scatter.spacing > 0  # the nearest will do
+    loose = scene.scatter is not None and scene.scatter.spacing > 0  # take the nearest joint
     for i, layer in enumerate(scene.soft_layers):
         joint, key = int(abs(joints - layer.y).argmin()), f"soft_layers[{i}].y"
         if abs(joints[joint] - layer.y) > 1e-6 * pillar.block and not loose:
@@ -109,7 +109,7 @@ def _of_lever(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_load(scene: Scene) -> Iterator[Wrong]:
-    """Yield loads that the start does not take."""
+    """Yield loads that contradict the start's boundary condition."""
     load, start = scene.load, scene.ends.start
     if load.is_motion and start not in ("fixed", "quiet"):
         allowed = "is the motion of a base: needs ends.start = 'fixed' or 'quiet'"
@@ -129,7 +129,7 @@ def _of_load(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_support(scene: Scene) -> Iterator[Wrong]:
-    """Yield pillars whose weight no end bears, though some end holds them back."""
+    """Yield pillars whose weight no end bears, though some end holds them."""
     gravity, ends = scene.gravity, scene.ends
     if gravity is None or "fixed" in (ends.start, ends.end) or any(scene.bears):
         return
@@ -148,8 +148,8 @@ def _of_damping(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_strength(scene: Scene) -> Iterator[Wrong]:
-    """Yield contradictions of laws, and a tension that one does not bear; a weight may press it.
-    Layers take what they do not give from the joints, so that these come first."""
+    """Yield contradictions of joint laws, and a tensile prestress beyond a joint's strength unless
+    the weight may close it. [joints] come first, since layers inherit from them."""
     presses = scene.gravity is not None and scene.gravity.static
     pull = 0.0 if scene.prestress is None or presses else -scene.prestress.normal
     for table, law in zip(scene.laws, (scene.joints, *scene.layers), strict=True):
@@ -179,8 +179,8 @@ def _of_scheme(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_discretisation(scene: Scene) -> Iterator[Wrong]:
-    """Yield contradictions between how the rock is meshed and stepped: a file decides all that
-    would describe the elements that are built."""
+    """Yield contradictions of mesh and elements: with a mesh file, keys that describe built
+    elements."""
     numerics, key = scene.numerics.continuum, "numerics.continuum"
     if numerics.mesh is not None:
         if numerics.dim == 1:
@@ -196,7 +196,7 @@ def _of_discretisation(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_thickness(layer: SoftLayer, scene: Scene) -> Iterator[Wrong]:
-    """Yield what contradicts in a layer with a thickness, meshed as rock between shorter blocks."""
+    """Yield contradictions of a layer with a thickness, which is meshed as rock."""
     block, thick = scene.pillar.block, layer.thickness
     if thick is None:
         return
@@ -212,7 +212,7 @@ def _of_thickness(layer: SoftLayer, scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_segments(scene: Scene) -> Iterator[Wrong]:
-    """Yield contradictions of the segments, and what they and random joints exclude."""
+    """Yield contradictions of segments and scatter, and keys that these exclude."""
     if scene.is_uniform:
         return
     if scene.block_count < 2:

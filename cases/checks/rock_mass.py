@@ -25,7 +25,7 @@ NEEDS = (("offset", "spacing"), ("scatter", "spacing"), ("offset", "ends_at"), (
 
 
 def rules(scene: RockMass) -> list[Iterator[Wrong]]:
-    """Return the rules of a rock mass whose tables are each right."""
+    """Return the rules for a rock mass whose tables are each valid."""
     try:
         shape = shape_of(scene.domain)
     except GeometryError as error:
@@ -35,7 +35,7 @@ def rules(scene: RockMass) -> list[Iterator[Wrong]]:
 
 
 def _of_support(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
-    """Yield rock under gravity that no side bears, though some side holds it back."""
+    """Yield rock under gravity that no side bears, though some side holds it."""
     gravity, normals = scene.gravity, outline.normals()
     quiet = [side for side in scene.boundaries.sides("quiet") if side in normals]
     if gravity is None or scene.boundaries.sides("fixed"):
@@ -56,8 +56,8 @@ def _of_support(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
 
 
 def _of_cuts(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
-    """Yield joints that miss the domain. Those of spacings that fit into it do not, and sets that
-    end at others are known when they are cut. The contacts of a file become those of the sets."""
+    """Yield joints that miss the domain, except sets with spacings that fit into it and sets that
+    end at others, which cutting checks. Assign the contacts of a file to joint sets."""
     if scene.domain.given is not None:
         normals = [one.normal for one in scene.joint_sets]
         scene.domain.join([one.name for one in scene.joint_sets], np.array(normals))
@@ -218,7 +218,7 @@ def _of_regions(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
 
 
 def _of_outlines(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
-    """Yield outlines that are no polygons, and those on sides that waves enter through."""
+    """Yield outlines that are not polygons, or lie on sides with waves or periodic sides."""
     for i, one in enumerate(scene.regions):
         if one.outline is None:
             continue
@@ -233,7 +233,7 @@ def _of_outlines(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
 
 
 def _of_periodic_sides(scene: RockMass) -> Iterator[Wrong]:
-    """Yield boundaries that do not run from one periodic side to the other."""
+    """Yield region boundaries that do not run from one periodic side to the other."""
     sides = ("left", "front", "bottom") if scene.in_space else ("left", "bottom")
     for i, one in enumerate(scene.regions):
         if one.outline is not None:

@@ -1,4 +1,4 @@
-"""Contradictions that any scene may have, and those of one joint law."""
+"""Contradictions that any scene may have, and those within one joint law."""
 
 from collections.abc import Iterator
 from math import ceil, floor, log10
@@ -9,7 +9,7 @@ from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.segment import Segment
 
-MOST_SAMPLES = 10_000_000  # 80 MB for each section, point and energy term
+MOST_SAMPLES = 10_000_000  # 80 MB per section, point and energy term
 MOST_SNAPSHOTS = 10_000
 SNAP = 1 + 1e-6  # least ratio of the fracture energy to that of a vertical softening line
 
@@ -17,14 +17,13 @@ Wrong = tuple[str, object, str]  #: key, value, what is allowed
 
 
 def within(table: str, found: Iterator[Wrong]) -> Iterator[Wrong]:
-    """Yield contradictions under the full keys of their table; its path replaces `{table}`."""
+    """Yield contradictions with the full keys of their table, whose path replaces `{table}`."""
     for key, value, allowed in found:
         yield f"{table}.{key}", value, allowed.replace("{table}", table)
 
 
 def of_time(scene: AnyScene) -> Iterator[Wrong]:
-    """Yield contradictions between the sampling interval, the times of snapshots and the
-    duration."""
+    """Yield contradictions between sampling interval, snapshot interval and duration."""
     interval, duration, fields = scene.interval, scene.time.duration, scene.record.fields
     if interval > duration:
         allowed = f"must not exceed time.duration = {duration:g}"
@@ -41,7 +40,7 @@ def of_time(scene: AnyScene) -> Iterator[Wrong]:
 
 
 def of_quality(scene: AnyScene) -> Iterator[Wrong]:
-    """Yield contradictions of a quality factor with the loads, or with other damping of rock."""
+    """Yield contradictions between a quality factor and the loads, or other damping of the rock."""
     quality = scene.rock.quality_factor
     if quality is None:
         return
@@ -55,14 +54,14 @@ def of_quality(scene: AnyScene) -> Iterator[Wrong]:
 
 
 def of_damping(law: JointLaw | Segment, scene: AnyScene) -> Iterator[Wrong]:
-    """Yield a damping ratio beside Rayleigh damping."""
+    """Yield a damping ratio that is given together with Rayleigh damping."""
     if scene.damping.rayleigh is not None and law.damping_ratio is not None:
         allowed = "damping.rayleigh already sets the dashpots: give one of them"
         yield "damping_ratio", law.damping_ratio, allowed
 
 
 def of_strength(law: JointLaw) -> Iterator[Wrong]:
-    """Yield contradictions between the keys of strength in one table."""
+    """Yield contradictions between the strength keys of one table."""
     for part in PARTS:
         given = [key for key in part.all_keys if getattr(law, key) is not None]
         if not given:
@@ -82,7 +81,7 @@ def of_strength(law: JointLaw) -> Iterator[Wrong]:
 
 
 def of_fracture(law: JointLaw, stiffness: float, symbol: str) -> Iterator[Wrong]:
-    """Yield a joint whose stress falls faster than it can unload (Pa/m): it would snap back."""
+    """Yield a joint that snaps back: its stress falls faster than its stiffness (Pa/m) unloads."""
     if law.tensile_strength is None or law.fracture_energy is None:
         return
     least = SNAP * law.tensile_strength**2 / (2 * stiffness)

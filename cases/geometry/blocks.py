@@ -16,23 +16,23 @@ from jointwave.cases.geometry.measure import (
     united,
 )
 
-CONVEX = 1e-6  #: of its area: what the outline of facets may lack that are together convex
+CONVEX = 1e-6  #: tolerated area error, over the area, of an outline of merged facets
 
 
 @dataclass(frozen=True)
 class Facets:
-    """Plane convex pieces of the surfaces of blocks: contacts of two, or the boundary of one.
+    """Convex plane pieces of block surfaces: contacts of two blocks, or the boundary of one.
 
     Attributes
     ----------
-    blocks : int array [c, 2], i and j, i < j; for the boundary j is OUTSIDE. Ordered by i, then j.
+    blocks : int array [c, 2], i and j, i < j; on the boundary j is OUTSIDE. Ordered by i, then j.
     normal : float array [c, d], unit vector out of block i.
     area : float array [c], m^(d-1); 1 in one dimension.
     centroid : float array [c, d], m.
     second_moment : float array [c, d, d], m^(d+1), integrals of x_i x_j about the centroid.
     joint_set : int array [c], index of the joint set, or NO_SET for a cut through intact rock;
-        beyond the sets of the scene that of a set of such cuts. On the boundary the set whose
-        joint lies along it.
+        indices past the scene's sets are sets of such cuts. On the boundary, the set of a joint
+        along it.
     side : int array [c], of the boundary: 0 for the outer one, 1 + k for opening k.
     outlines : corners around the normal.
     """
@@ -51,21 +51,21 @@ class Facets:
 
     @property
     def ends(self) -> np.ndarray:
-        """In the plane the ends of each [c, 2, 2], m: to the second block i lies to the left."""
+        """Ends of each facet in the plane [c, 2, 2], m, with block i left of the direction."""
         return self.outlines.corners.reshape(-1, 2, 2)
 
     def of_joints(self, sets: int) -> np.ndarray:
-        """Return which lie on joints of a scene with this number of sets, bool array [c]."""
+        """Return which facets lie on joints of a scene with this number of sets, bool array [c]."""
         return (self.joint_set >= 0) & (self.joint_set < sets)
 
 
 @dataclass(frozen=True)
 class Blocks:
-    """A domain cut into convex blocks. Neighbours have indices that are near each other.
+    """A domain cut into convex blocks, numbered so that neighbours have similar indices.
 
     Attributes
     ----------
-    body : the cells that the blocks are, with the same indices.
+    body : complex whose cells are the blocks, with the same indices.
     volume : float array [n], m^d. centroid : float array [n, d], m.
     second_moment : float array [n, d, d], m^(d+2), integrals of x_i x_j about the centroid.
     contacts : between blocks. boundary : on the boundary of the domain and of openings.
@@ -85,16 +85,14 @@ class Blocks:
 
     @property
     def nbytes(self) -> int:
-        """Bytes that the arrays take."""
+        """Size of the arrays, bytes."""
         tables = (self, self.body, self.contacts, self.boundary)
         return sum(x.nbytes for one in tables for x in vars(one).values() if hasattr(x, "nbytes"))
 
     def faces(self, tolerance: float) -> tuple[np.ndarray, np.ndarray, Outlines]:
-        """Return the faces of all blocks, in order: the block of each [f], its unit normal out of
-        that [f, d], and its outline. Coplanar facets of a block are one face.
-
-        tolerance : m, below which vertices lie in a line.
-        """
+        """Return the faces of all blocks, in order: block [f], outward unit normal [f, d], outline.
+        Coplanar facets of a block are one face. tolerance : m, below which vertices are
+        collinear."""
         half, plane = self.body.halves(), self.body.plane
         into = self.body.sides[half.facet, 1] == half.cell
         key = np.stack([half.cell, plane[half.facet], into], axis=1)
@@ -105,7 +103,7 @@ class Blocks:
 
     @cached_property
     def outlines(self) -> Outlines:
-        """In the plane the corners of each block, counter-clockwise."""
+        """Corners of each block in the plane, counter-clockwise."""
         block, normal, edges = self.faces(0.0)
         order = np.lexsort([np.arctan2(normal[:, 1], normal[:, 0]), block])
         first = np.searchsorted(block, np.arange(self.count + 1))
@@ -115,7 +113,7 @@ class Blocks:
 def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
     """Return the cells of a complex as blocks, numbered along rows across the domain.
 
-    tolerance : m, below which vertices lie in a line. in_rows : False numbers them as the cells.
+    tolerance : m, below which vertices are collinear. in_rows : False keeps the order of the cells.
     """
     moments, half = facet_moments(body), body.halves()
     m = cell_moments(body, half, moments.of(half.facet))
@@ -140,11 +138,8 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
 def _grouped(
     body: Complex, chosen: np.ndarray, key: np.ndarray, moments: Moments, tolerance: float
 ) -> Facets:
-    """Return some facets (bool array [f]), those of one key (int array [f, n]) as one piece.
-
-    moments : of all facets. What is left of a face beside others need not be convex, nor in one
-    piece: then it is as many facets as there are.
-    """
+    """Return the chosen facets (bool array [f]), merging those with equal rows of key (int array
+    [f, n]), except where these are not convex together. moments : of all facets."""
     facets = np.flatnonzero(chosen)
     first, group, order = _groups(key[facets])
     one, parts = facets[first], facets[order]
@@ -169,8 +164,8 @@ def _grouped(
 
 
 def _groups(key: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the groups of rows that are alike (int array [m, n]), in the order of the rows: one
-    row of each, the group of each row [m], in order, and the rows in that order [m]."""
+    """Group equal rows of key (int array [m, n]): return one row of each group, the group of each
+    sorted row [m], and the sorting order [m]."""
     order = np.lexsort(key.T[::-1])
     new = np.diff(key[order], axis=0, prepend=-2).any(axis=1)
     return order[new], np.cumsum(new) - 1, order

@@ -1,7 +1,7 @@
 """A cell complex: vertices, edges, faces and cells that fit together exactly, in any dimension.
 
-A k-cell is the list of the (k-1)-cells that bound it. Each exists once, for all cells that it
-bounds: whatever is cut, removed or joined, volumes add up and an inner facet belongs to two cells.
+A k-cell is the list of the (k-1)-cells that bound it. Each cell is stored once and shared by all
+cells that it bounds, so volumes add up after every cut, and an inner facet belongs to two cells.
 """
 
 from collections.abc import Sequence
@@ -13,17 +13,15 @@ import numpy as np
 
 from jointwave.cases.geometry.relations import composed, distinct, merged, sums
 
-OUTSIDE = -1  #: in place of a cell: beyond the domain, or in an opening
-NO_SET = -1  #: in place of a joint set: the boundary, or a cut through intact rock
-GENERIC = np.array([0.5488, 0.7152, 0.4332])  # no plane of a scene is likely to hold it
-PARALLEL = 1e-12  #: sine of the angle between planes below which they have one normal
+OUTSIDE = -1  #: instead of a cell index: outside the domain, or in an opening
+NO_SET = -1  #: instead of a joint set index: the boundary, or a cut through intact rock
+GENERIC = np.array([0.5488, 0.7152, 0.4332])  # unlikely to lie in a plane of a scene
+PARALLEL = 1e-12  #: sine of the angle below which planes share one normal
 
 
 class GeometryError(ValueError):
-    """A domain that is not cut into convex blocks: where, and the cause.
-
-    key : of what causes it, in the scene.
-    """
+    """A domain that cannot be cut into convex blocks: `at` (place), `cause` and `key` of the
+    scene."""
 
     def __init__(self, at: np.ndarray | None, cause: str, key: str = "domain") -> None:
         place = "" if at is None else ", near [{}]".format(", ".join(f"{x:.6g}" for x in at))
@@ -32,14 +30,14 @@ class GeometryError(ValueError):
 
 
 class Sliver(GeometryError):
-    """A block too thin or too pointed to be passed on."""
+    """A block that is too thin or too pointed to keep."""
 
 
 class Halves(NamedTuple):
-    """Facets, once for each cell that they bound: int arrays [h].
+    """Facets listed once for each cell that they bound (half-facets): int arrays [h].
 
-    facet, cell : indices. across : the cell on the other side, or OUTSIDE. outward : float array
-    [h, d], unit normal out of the cell.
+    facet, cell : indices. across : cell on the other side, or OUTSIDE. outward : float array [h,
+    d], unit normal out of the cell.
     """
 
     facet: np.ndarray
@@ -50,22 +48,21 @@ class Halves(NamedTuple):
 
 @dataclass(frozen=True)
 class Complex:
-    """A domain of d dimensions in convex cells. Facets, of d - 1 dimensions, know their planes.
+    """Convex cells of a domain in d dimensions, with their facets of d - 1 dimensions.
 
     Attributes
     ----------
     vertices : float array [v, d], m.
-    bounds : for k = 1 to d - 1 the pairs of a k-cell and a (k-1)-cell that bounds it, int arrays
-        [m, 2] sorted by the k-cell: the ends of edges, then the edges of faces.
-    sides : int array [f, 2], the cells that the normal of a facet points out of and into, or
-        OUTSIDE.
-    plane : int array [f], the direction of a facet in `normals`. Facets of one cell and direction
-        lie in one plane on each side of the cell, since cells are convex.
-    joint_set : int array [f], the set that a facet is a joint of, or NO_SET.
-    side : int array [f], of a facet with OUTSIDE: 0 for the outer boundary, 1 + k for opening k.
+    bounds : for k = 1 to d - 1, pairs of a k-cell and a (k-1)-cell that bounds it, int arrays [m,
+        2] sorted by the k-cell: the ends of edges, then the edges of faces.
+    sides : int array [f, 2], the cells that the facet's normal points out of and into, or OUTSIDE.
+    plane : int array [f], index of the facet's normal in `normals`. Facets of one cell with the
+        same normal lie in one plane on each side of the cell, since cells are convex.
+    joint_set : int array [f], the set whose joint the facet lies on, or NO_SET.
+    side : int array [f], for boundary facets: 0 for the outer boundary, 1 + k for opening k.
     normals : float array [l, d], unit vectors, no two of them parallel.
-    region : int array [count], the region of rock that holds each cell, or -1.
-    count : cells are 0 to count - 1; some may have been removed.
+    region : int array [count], region of rock of each cell, or -1.
+    count : cells are numbered 0 to count - 1; some may have been removed.
     """
 
     vertices: np.ndarray
@@ -84,7 +81,7 @@ class Complex:
         return self.vertices.shape[1]
 
     def numbers(self) -> list[int]:
-        """Return how many k-cells there are, for k = 0 to d."""
+        """Return the number of k-cells for k = 0 to d."""
         edges = [len(self.bounds[0]) // 2] if self.dim == 3 else []
         vertices = [len(self.vertices)] if self.dim > 1 else []
         return [*vertices, *edges, len(self.sides), self.count]
@@ -101,7 +98,7 @@ class Complex:
         return self.inner & (one == other)
 
     def halves(self, chosen: np.ndarray | slice = np.s_[:]) -> Halves:
-        """Return the facets, or those that are chosen, once for each of their cells."""
+        """Return the half-facets of all facets, or of the chosen ones."""
         number = np.arange(len(self.sides))[chosen]
         facet, into = np.tile(number, 2), np.repeat([0, 1], len(number))
         held = self.sides[facet, into] != OUTSIDE
@@ -110,34 +107,34 @@ class Complex:
         return Halves(facet, self.sides[facet, into], self.sides[facet, 1 - into], outward)
 
     def beside(self, cells: np.ndarray) -> Halves:
-        """Return the halves of the facets of some cells (bool array [count]), these cells' only."""
+        """Return the half-facets of some cells, bool array [count]."""
         near = np.append(cells, False)[self.sides].any(axis=1)
         half = self.halves(near)
         return Halves(*(array[cells[half.cell]] for array in half))
 
     def vertices_of(self, pairs: np.ndarray) -> np.ndarray:
-        """Return the pairs (x, vertex) of pairs (x, facet), int arrays [m, 2], in order."""
+        """Return sorted pairs (x, vertex) from pairs (x, facet), int arrays [m, 2]."""
         for bound in reversed(self.bounds):
             pairs = distinct(composed(pairs, bound)[0])
         return distinct(pairs)
 
     def corners(self, half: Halves) -> np.ndarray:
-        """Return the pairs (cell, vertex) of halves, int array [m, 2], sorted, each once."""
+        """Return the distinct pairs (cell, vertex) of half-facets, int array [m, 2], sorted."""
         return self.vertices_of(np.stack([half.cell, half.facet], axis=1))
 
     def corners_of_facets(self) -> np.ndarray:
-        """Return the pairs (facet, vertex) of all facets, int array [m, 2], sorted, each once."""
+        """Return the distinct pairs (facet, vertex) of all facets, int array [m, 2], sorted."""
         number = np.arange(len(self.sides))
         return self.vertices_of(np.stack([number, number], axis=1))
 
     def centres(self, half: Halves | None = None) -> np.ndarray:
-        """Return the mean of each cell's vertices [count, d], which lies inside; nan of none."""
+        """Return the mean vertex of each cell [count, d], m, an inner point; NaN if removed."""
         return self.means(self.corners(half or self.halves()), self.count)
 
     def means(self, pairs: np.ndarray, number: int) -> np.ndarray:
-        """Return the mean of the vertices of things [number, d]; nan of one without.
+        """Return the mean vertex of each owner [number, d], m; NaN for an owner without vertices.
 
-        pairs : int array [m, 2] of a thing and a vertex of it.
+        pairs : int array [m, 2], owner and vertex.
         """
         owner, vertex = pairs.T
         with np.errstate(invalid="ignore"):
@@ -145,8 +142,8 @@ class Complex:
             return sums(owner, self.vertices[vertex], number) / times
 
     def extents(self, half: Halves, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the least and the largest value of each cell's vertices [count, ...], infinite of
-        one that has no half; x : of all vertices [v, ...]."""
+        """Return the least and the largest value of x over each cell's vertices [count, ...]; (inf,
+        -inf) for cells without half-facets. x : values at all vertices [v, ...]."""
         cell, vertex = self.corners(half).T
         begins = np.flatnonzero(np.diff(cell, prepend=-1))
         low, high = (np.full((self.count, *x.shape[1:]), one) for one in (np.inf, -np.inf))
@@ -156,23 +153,23 @@ class Complex:
         return low, high
 
     def places(self, half: Halves) -> np.ndarray:
-        """Return the distance of the plane of each half from the origin [h], m, along its normal
-        out of the cell."""
+        """Return the signed distance from the origin of each half-facet's plane [h], m, along its
+        outward normal."""
         first = half.facet
         for bound in reversed(self.bounds):
             first = bound[np.searchsorted(bound[:, 0], first), 1]
         return (self.vertices[first] * half.outward).sum(axis=1)
 
     def depths(self, point: np.ndarray) -> np.ndarray:
-        """Return how deep a point [d] lies in each cell [count], m; negative outside of it, and
-        infinitely so of a cell that is not there."""
+        """Return the depth of a point [d] in each cell [count], m: negative outside, -inf for
+        removed cells."""
         half, depth = self.halves(), np.full(self.count, np.inf)
         np.minimum.at(depth, half.cell, self.places(half) - half.outward @ point)
         return np.where(np.isinf(depth), -np.inf, depth)
 
     def removed(self, cells: np.ndarray, side: int) -> "Complex":
-        """Return the complex without some cells (bool array [count]), whose facets to other cells
-        become the boundary `side`."""
+        """Return the complex without some cells (bool array [count]); the facets they shared with
+        other cells become the boundary `side`."""
         was = np.append(cells, False)[self.sides]  # the last stands for OUTSIDE
         return replace(
             self,
@@ -181,11 +178,12 @@ class Complex:
         )._without_inner()
 
     def joined(self, root: np.ndarray) -> "Complex":
-        """Return the complex with its cells joined to others: root, int array [count]."""
+        """Return the complex with cells merged; root : int array [count], the cell that each
+        joins."""
         return replace(self, sides=np.append(root, OUTSIDE)[self.sides])._without_inner()
 
     def _without_inner(self) -> "Complex":
-        """Return the complex without facets that have the same on both sides."""
+        """Return the complex without facets that have the same cell on both sides."""
         held = self.sides[:, 0] != self.sides[:, 1]
         bounds = self.bounds
         if bounds:
@@ -196,8 +194,8 @@ class Complex:
         return replace(self, bounds=bounds, **own)
 
     def with_normal(self, normal: np.ndarray) -> tuple[np.ndarray, int, bool]:
-        """Return `normals` with one more where none is parallel to it, its index, and whether the
-        one that is there has the opposite sense."""
+        """Return `normals`, extended by the normal if none is parallel to it; its index; and
+        whether the existing one has the opposite sense."""
         cosine = self.normals @ normal
         away = np.linalg.norm(normal - cosine[:, None] * self.normals, axis=1)
         if (away <= PARALLEL).any():
@@ -209,10 +207,10 @@ class Complex:
 def from_facets(
     x: np.ndarray, loops: Sequence[Sequence[int]], sides: np.ndarray, normal: np.ndarray
 ) -> Complex:
-    """Return the complex of facets, by their vertices in order around them.
+    """Return the complex of facets given as loops of vertices in order.
 
-    x : float array [v, d], m. sides : the cells that the unit normals [n, d] of facets point out of
-    and into, int array [n, 2].
+    x : float array [v, d], m. sides : int array [n, 2], the cells that the unit normals [n, d] of
+    facets point out of and into.
     """
     turned = (normal @ GENERIC[: x.shape[1]] < 0)[:, None]
     normals, plane = np.unique(
@@ -246,7 +244,7 @@ def from_facets(
 
 
 def box(low: np.ndarray, high: np.ndarray) -> Complex:
-    """Return a box in any dimension as one cell; low, high : its corners, float arrays [d], m."""
+    """Return an axis-parallel box as one cell; low, high : its corners, float arrays [d], m."""
     dim = len(low)
     x = np.array(list(product(*zip(low, high, strict=True))), dtype=float)
     corner = np.arange(2**dim).reshape((2,) * dim)

@@ -1,10 +1,10 @@
-"""Cutting the convex cells of a complex by parallel planes, all cells and planes together.
+"""Cut the convex cells of a complex by families of parallel planes, all in one pass.
 
-Vertices are classified by the planes that they lie on or between. Then every edge, every face and
-every cell is split, dimension by dimension, by the planes of the cells that it belongs to; each
-part lies in one slab between planes. What a split k-cell gains at a plane is one new (k-1)-cell,
-bounded by the (k-2)-cells of its own that lie in that plane, and shared by the two slabs beside it.
-So a facet that one of its two cells is cut at is split for the other as well.
+Vertices are classified as on a plane or between two. Edges, faces and cells are then split in this
+order by the planes of the cells that they belong to, so that each part lies in one slab between
+planes. A split k-cell gains a (k-1)-cell in each plane, bounded by its (k-2)-cells in that plane
+and shared by the slabs on both sides. A facet that is split for one of its two cells is therefore
+split for the other too.
 """
 
 from collections.abc import Sequence
@@ -23,18 +23,18 @@ GRAZING = "joints meet at a grazing angle"
 class Planes:
     """Families of parallel planes: one family for each group of cells.
 
-    The place of a plane is its distance from the origin along the normal. A vertex has the code
-    2 j + 1 on plane j, and 2 j between planes j - 1 and j; those of other cells have the range of
-    their vertices' codes.
+    The place of a plane is its distance from the origin along the normal. A vertex has code 2 j + 1
+    on plane j, and 2 j between planes j - 1 and j; edges, faces and cells have the range of their
+    vertices' codes.
 
     Attributes
     ----------
     normal : float array [d], unit vector.
-    family : int array [cells], of each cell, or -1 for one that is not cut.
+    family : int array [cells], family of each cell, or -1 for cells that are not cut.
     places : float array [p], m, of all planes, increasing, further apart than the tolerance.
-    held : which family has which planes, int pairs (family, plane), sorted.
+    held : the planes of each family, int pairs (family, plane), sorted.
     base : int array [families], signed number of a family's first plane.
-    joint_set : index of the set that the planes are joints of, or NO_SET.
+    joint_set : index of the joint set of the planes, or NO_SET.
     """
 
     normal: np.ndarray
@@ -45,7 +45,7 @@ class Planes:
     joint_set: int
 
     def codes(self, s: np.ndarray, tolerance: float) -> np.ndarray:
-        """Return the codes of places s, float array [n], m."""
+        """Return the codes of vertices at distances s along the normal, float array [n], m."""
         at = np.searchsorted(self.places, s - tolerance)
         near = np.append(self.places, np.inf)[at] <= s + tolerance
         return 2 * at + near
@@ -59,8 +59,8 @@ def planes_of(
     joint_set: int = NO_SET,
     tolerance: float = 0.0,
 ) -> Planes:
-    """Return families of planes by the places of each, increasing; planes within the tolerance (m)
-    are one. base : 0 where absent. For the rest see `Planes`."""
+    """Return families of planes from the places of each, m, increasing; planes within the tolerance
+    (m) are merged. base : 0 where absent. For the others see `Planes`."""
     places = np.concatenate(each)
     order = np.argsort(places, kind="stable")
     new = np.diff(places[order], prepend=-np.inf) > tolerance
@@ -72,13 +72,13 @@ def planes_of(
 
 
 def one_plane(normal: np.ndarray, place: float, cells: np.ndarray) -> Planes:
-    """Return a plane that cuts some cells (bool array [cells]), of no set."""
+    """Return one plane, of no joint set, that cuts some cells (bool array [cells])."""
     return planes_of(normal, np.where(cells, 0, -1), [np.array([place])])
 
 
 class Cut(NamedTuple):
-    """A complex after a cut; of each of its cells the one that it was part of, and the signed
-    number of the plane below it (int arrays [count])."""
+    """A complex after a cut; for each cell its parent before the cut, and the signed number of the
+    plane below it, int arrays [count]."""
 
     body: Complex
     parent: np.ndarray
@@ -88,9 +88,9 @@ class Cut(NamedTuple):
 def cut(body: Complex, planes: Planes, tolerance: float) -> Cut:
     """Return a complex with its cells cut by their planes.
 
-    Vertices within the tolerance (m) of a plane are on it. A cell's first slab keeps its index, the
-    others come after all cells that there were. Raises Sliver where a plane meets a cell within the
-    tolerance at more than an outline.
+    Vertices within the tolerance (m) of a plane are on it. A cell's first slab keeps its index; the
+    others are appended. Raises Sliver where a plane cuts a cell and contains one of its facets,
+    edges included, within the tolerance.
     """
     work = _Work(body, planes, tolerance)
     for k in range(1, body.dim + 1):
@@ -101,11 +101,10 @@ def cut(body: Complex, planes: Planes, tolerance: float) -> Cut:
 class _Work:
     """A complex while it is cut. Lists have one entry for each dimension k of cells, 0 to d.
 
-    number : of k-cells. rows : int arrays [m, 2], k-cells with a (k-1)-cell that bounds each,
-    sorted. codes : least and largest code of the vertices of each k-cell, int arrays [n, 2]; of
-    those that are not cut the least is the larger. crossed : pairs (k-cell, plane) at which k-cells
-    are split, sorted. parts : pairs (k-cell, part), those above these planes. vertices : float
-    arrays [n, d], m.
+    number : of k-cells. rows : int arrays [m, 2], k-cells with their bounding (k-1)-cells, sorted.
+    codes : least and largest vertex code of each k-cell, int arrays [n, 2]; least > largest marks
+    cells that are not cut. crossed : pairs (k-cell, plane) at which k-cells are split, sorted.
+    parts : pairs (k-cell, part above each of these planes). vertices : float arrays [n, d], m.
     """
 
     def __init__(self, body: Complex, planes: Planes, tolerance: float) -> None:
@@ -125,11 +124,11 @@ class _Work:
         cell = np.flatnonzero(planes.family >= 0)
         family, (low, high) = planes.family[cell], self.codes[-1][cell].T
         first, after = self.held.index(family, (low + 1) // 2), self.held.index(family, high // 2)
-        at, which = ranges(first, after)  # planes of a cell's family between its vertices
+        at, which = ranges(first, after)  # planes of the cell's family between its vertices
         none = np.empty((0, 2), np.int64)
         self.crossed, self.parts = [none] * (dim + 1), [none] * (dim + 1)
         self.crossed[dim] = np.stack([cell[which], planes.held[at, 1]], axis=1)
-        for k in range(dim, 1, -1):  # those that split k-cells share with what bounds them
+        for k in range(dim, 1, -1):  # planes that split k-cells also split their boundaries
             split = np.zeros(self.number[k], bool)
             split[self.crossed[k][:, 0]] = True
             rows = self.rows[k][split[self.rows[k][:, 0]]]
@@ -139,7 +138,7 @@ class _Work:
             self.crossed[k - 1] = distinct(found[(low < code) & (code < high)])
 
     def split(self, k: int) -> None:
-        """Split the k-cells, whose (k-1)-cells are split already, and add what they gain."""
+        """Split the k-cells, whose (k-1)-cells are already split, and add their sections."""
         cross = Lookup(self.crossed[k], len(self.planes.places) + 1)
         (cell, plane), first = self.crossed[k].T, self.number[k]
         mine = np.isin(self.rows[k][:, 1], self.parts[k - 1][:, 0])  # bounded by split (k-1)-cells
@@ -174,8 +173,8 @@ class _Work:
         self.number[k - 1] += len(cell)
 
     def _bound_gained(self, k: int, cross: Lookup) -> None:
-        """Bound the (k-1)-cells that k-cells gain: by vertices' places, or by (k-2)-cells of their
-        own in the planes."""
+        """Bound the sections that k-cells gain: set the vertex places (k = 1), or list the
+        (k-2)-cells that lie in the planes."""
         cell, plane = cross.pairs.T
         if k == 1:
             at = np.searchsorted(self.rows[1][:, 0], cell)
@@ -199,7 +198,8 @@ class _Work:
         self.rows[k - 1] = np.concatenate([self.rows[k - 1], bound])
 
     def _check_closed(self, k: int, bound: np.ndarray, number: int) -> None:
-        """Raise Sliver unless sections have two ends, or edges that meet two by two."""
+        """Raise Sliver unless each section has two ends (k = 2) or a closed loop of edges (k =
+        3)."""
         ends, times = bound, np.bincount(bound[:, 0], minlength=number)
         wrong = np.flatnonzero(times != 2 if k == 2 else times < 3)
         if not len(wrong) and k == 3:
@@ -210,13 +210,13 @@ class _Work:
             raise self._grazing(k, self.crossed[k][wrong[0], 0])
 
     def _grazing(self, k: int, cell: int) -> Sliver:
-        """Return the error at the first vertex of a k-cell."""
+        """Return the Sliver error, located at the first vertex of a k-cell."""
         for level in range(k, 0, -1):
             cell = self.rows[level][np.searchsorted(self.rows[level][:, 0], cell), 1]
         return Sliver(np.concatenate(self.vertices)[cell], GRAZING)
 
     def finished(self) -> Cut:
-        """Return the complex that is left."""
+        """Return the complex after the cut."""
         body, planes, dim = self.body, self.planes, self.body.dim
         normals, plane, turned = body.with_normal(planes.normal)
         split, (whole, above) = self.parts[dim - 1][:, 0], self.parts[dim].T
@@ -227,13 +227,13 @@ class _Work:
 
         cells, facets = self.rows[dim].T
         into = of_facets(body.sides[:, 1], 0)[facets] == parent[cells]
-        new = facets - len(body.sides) - len(split)  # number of those that are gained
+        new = facets - len(body.sides) - len(split)  # index among the facets gained
         into[new >= 0] = (cells[new >= 0] == above[new[new >= 0]]) != turned
         sides = np.full((self.number[dim - 1], 2), OUTSIDE)
         sides[: len(body.sides)] = body.sides
         sides[facets, into.astype(np.int64)] = cells
         family, joint_set = planes.family[parent], of_facets(body.joint_set, planes.joint_set)
-        low, high = self.codes[dim - 1].T  # joints where there were none, on planes of their cells
+        low, high = self.codes[dim - 1].T  # existing facets on a cell's plane: joints
         on = np.flatnonzero((low == high) & (low % 2 == 1) & (joint_set == NO_SET))
         here = [
             self.held.holds(k, low[on] // 2) & (k >= 0) for k in np.append(family, -1)[sides[on]].T
@@ -258,7 +258,7 @@ class _Work:
 
 
 def _span(rows: np.ndarray, codes: np.ndarray, number: int) -> np.ndarray:
-    """Return the least and the largest code of what bounds each of a number of cells."""
+    """Return the least and largest code [number, 2] over the bounding cells of each cell."""
     found = np.tile(np.array([1, 0]), (number, 1))
     if len(rows):
         begins = np.flatnonzero(np.diff(rows[:, 0], prepend=-1))

@@ -1,20 +1,20 @@
-"""Location of points among blocks, in any dimension: their block, or their contact."""
+"""Locate points among blocks: the blocks around a point, or the nearest contact."""
 
 import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.relations import groups, joined
 
-SAME = 1e-9  #: of the size of all blocks: the distance below which places are one
+SAME = 1e-9  #: tolerance over the domain's diagonal: nearer places coincide
 
 
 def tolerance_of(blocks: Blocks) -> float:
-    """Return the length below which places are one, m."""
+    """Return the distance below which places coincide, m."""
     return SAME * float(np.linalg.norm(np.ptp(blocks.body.vertices, axis=0)))
 
 
 def blocks_at(blocks: Blocks, points: np.ndarray) -> list[np.ndarray]:
-    """Return the blocks that each point (float array [m, d], m) lies in or on, ascending."""
+    """Return the blocks in or on which each point (float array [m, d], m) lies, ascending."""
     half, beyond = blocks.body.halves(), tolerance_of(blocks)
     reach = blocks.body.places(half) + beyond
     found = []
@@ -26,10 +26,10 @@ def blocks_at(blocks: Blocks, points: np.ndarray) -> list[np.ndarray]:
 
 
 def sides_at(blocks: Blocks, points: np.ndarray, sets: int) -> list[list[int]]:
-    """Return the blocks that each point (float array [m, d], m) is read in: one and, on joints, one
-    on each side; none outside the rock. sets : number of joint sets, the first ones of all.
+    """Return the blocks that read each point (float array [m, d], m): one, or one on each side of
+    joints; none outside the rock. sets : number of leading joint sets that are joints.
 
-    Of blocks that share a point without a joint between them it is the first.
+    Of blocks that meet at the point without a joint between them, the first is chosen.
     """
     found = blocks_at(blocks, points)
     near = rock_neighbours(blocks, sets) if any(len(here) > 1 for here in found) else {}
@@ -42,7 +42,7 @@ def sides_at(blocks: Blocks, points: np.ndarray, sets: int) -> list[list[int]]:
 
 
 def rock_neighbours(blocks: Blocks, sets: int) -> dict[int, list[int]]:
-    """Return the blocks beside each across cuts through intact rock of one region."""
+    """Return each block's neighbours across cuts through intact rock of one region."""
     contacts, region = blocks.contacts, blocks.body.region
     through = ~contacts.of_joints(sets)
     through &= np.diff(region[contacts.blocks], axis=1)[:, 0] == 0
@@ -52,10 +52,10 @@ def rock_neighbours(blocks: Blocks, sets: int) -> dict[int, list[int]]:
 
 
 def contact_at(blocks: Blocks, points: np.ndarray, sets: int) -> np.ndarray:
-    """Return the contact of the first joint sets that is nearest to each point (float array [m, d],
-    m); of those as near, the first of the first set.
+    """Return the contact of the leading joint sets that is nearest to each point (float array [m,
+    d], m); of equally near ones, the first of the first set.
 
-    Raises ValueError where there is no such contact.
+    Raises ValueError if there is no such contact.
     """
     chosen = np.flatnonzero(blocks.contacts.of_joints(sets))
     chosen = chosen[np.argsort(blocks.contacts.joint_set[chosen], kind="stable")]
@@ -77,10 +77,10 @@ def contact_at(blocks: Blocks, points: np.ndarray, sets: int) -> np.ndarray:
 
 
 def distance_from(corners: np.ndarray, normal: np.ndarray, point: np.ndarray) -> float:
-    """Return the distance of a point [d] from a convex piece of a plane, m; corners [n, d]."""
+    """Return the distance of a point [d] from a convex plane piece, m; corners [n, d], m."""
     edge, off = np.roll(corners, -1, axis=0) - corners, point - corners
     if corners.shape[1] == 3 and (np.cross(edge, off) @ normal >= 0).all():
-        return abs(float(off[0] @ normal))  # before the piece itself, not beyond one of its edges
+        return abs(float(off[0] @ normal))  # the point projects into the piece
     along = (edge * off).sum(axis=1) / np.maximum((edge**2).sum(axis=1), np.finfo(float).tiny)
     away = np.linalg.norm(off - np.clip(along, 0.0, 1.0)[:, None] * edge, axis=1)
     return float(away.min())

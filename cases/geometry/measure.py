@@ -1,8 +1,8 @@
-"""Volume, centroid and second moments of cells, and pieces of their surfaces, in any dimension.
+"""Volume, centroid and second moments of cells, and outlines of facets, in any dimension.
 
-Facets are fans of simplices from one of their vertices. A simplex of k dimensions, corners v, has
-the second moment V / ((k + 1) (k + 2)) (sum v v + sum v sum v) about the origin. Cells are cones
-over their facets.
+Facets are fans of simplices from one of their vertices; cells are cones over their facets. A
+k-simplex with corners v has the second moment V / ((k + 1) (k + 2)) (sum v v + sum v sum v) about
+the origin.
 """
 
 from collections.abc import Sequence
@@ -17,15 +17,15 @@ LEVEL = 1e-9  # of a unit normal: a component below it is round-off
 
 
 class Moments(NamedTuple):
-    """Volume or area [n], m^k; centroid [n, d], m; second moment about the centroid [n, d, d],
-    m^(k + 2), the integrals of x_i x_j."""
+    """Volume or area [n], m^k; centroid [n, d], m; second moment about the centroid [n, d, d], m^(k
+    + 2), the integrals of x_i x_j."""
 
     size: np.ndarray
     centroid: np.ndarray
     second: np.ndarray
 
     def of(self, rows: np.ndarray) -> "Moments":
-        """Return those of some, int array."""
+        """Return the moments of some rows, int array."""
         return Moments(self.size[rows], self.centroid[rows], self.second[rows])
 
 
@@ -46,9 +46,9 @@ def facet_moments(body: Complex, facets: np.ndarray | None = None) -> Moments:
 def cell_moments(
     body: Complex, half: Halves | None = None, facets: Moments | None = None
 ) -> Moments:
-    """Return the moments of all cells by cones over their facets; volume 0 of those without.
+    """Return the moments of all cells as cones over their facets; removed cells have volume 0.
 
-    half : the facets of cells; all where absent. facets : moments of the facet of each half.
+    half : half-facets, all where absent. facets : moments of each half-facet.
 
     A cone of height h over a facet of size A, with f from its apex to the facet's centroid and S
     the facet's second moment, has A h / d, A h f / (d + 1) and h (S + A f f) / (d + 2) about its
@@ -67,7 +67,7 @@ def cell_moments(
 
 
 def united(parts: Moments, owner: np.ndarray, number: int) -> Moments:
-    """Return the moments of a number of things made of parts with their owners (int array [m])."""
+    """Return the moments of unions of parts; owner : int array [m], the union of each part."""
     about = np.zeros((number, parts.centroid.shape[1]))
     about[owner[::-1]] = parts.centroid[::-1]
     away = parts.centroid - about[owner]
@@ -77,8 +77,8 @@ def united(parts: Moments, owner: np.ndarray, number: int) -> Moments:
 
 
 def _about_centroids(parts: Moments, owner: np.ndarray, about: np.ndarray) -> Moments:
-    """Return the moments of things by the sizes of their parts, and these parts' first and second
-    moments about a point of each thing [n, d], m."""
+    """Return the moments of unions from the sizes of parts and the parts' first and second moments
+    about a point of each union [n, d], m."""
     whole, first, second = (sums(owner, one, len(about)) for one in parts)
     with np.errstate(invalid="ignore", divide="ignore"):
         centre = first / whole[:, None]
@@ -87,8 +87,8 @@ def _about_centroids(parts: Moments, owner: np.ndarray, about: np.ndarray) -> Mo
 
 
 def _of_simplices(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moments:
-    """Return the moments of things made of points, segments or triangles x [m, k + 1, d] with their
-    owners [m]; about : a point of each thing [n, d], m."""
+    """Return the moments of unions of points, segments or triangles x [m, k + 1, d], m; owner :
+    [m], union of each; about : a point of each union [n, d], m."""
     k, edges = x.shape[1] - 1, x[:, 1:] - x[:, :1]
     size = np.linalg.norm(edges[:, 0], axis=1) if k else np.ones(len(x))
     if k == 2:
@@ -101,33 +101,33 @@ def _of_simplices(x: np.ndarray, owner: np.ndarray, about: np.ndarray) -> Moment
 
 
 class Outlines(NamedTuple):
-    """Convex pieces of planes by their corners, one piece after the other, around the normal.
+    """Convex plane pieces as lists of corners around their normals.
 
     corners : float array [k, d], m. first : int array [n + 1], the first corner of each piece. In
-    the plane a piece runs from one end to the other with what the normal points out of to its left.
+    the plane a piece is a segment, directed so that the normal points to its right.
     """
 
     corners: np.ndarray
     first: np.ndarray
 
     def of(self, k: int) -> np.ndarray:
-        """Return the corners of one piece [n, d], m."""
+        """Return the corners of piece k [n, d], m."""
         return self.corners[self.first[k] : self.first[k + 1]]
 
 
 def outlines_of(pieces: Sequence[np.ndarray]) -> Outlines:
-    """Return pieces by the corners of each [n, d], m."""
+    """Return outlines from the corners of each piece [n, d], m."""
     return Outlines(np.concatenate(pieces), np.append(0, np.cumsum(list(map(len, pieces)))))
 
 
 def joined(parts: Sequence[Outlines]) -> Outlines:
-    """Return the pieces of all parts, one part after the other."""
+    """Return the pieces of several outlines in one."""
     sizes = np.concatenate([np.diff(one.first) for one in parts])
     return Outlines(np.concatenate([one.corners for one in parts]), np.append(0, np.cumsum(sizes)))
 
 
 def outline_moments(pieces: Outlines) -> Moments:
-    """Return the moments of pieces by fans of simplices from the first corner of each."""
+    """Return the moments of pieces, each a fan of simplices from its first corner."""
     x, first = pieces
     size, dim = np.diff(first), x.shape[1]
     owner = np.repeat(np.arange(len(size)), np.maximum(size - (dim - 1), 0))
@@ -139,9 +139,9 @@ def outline_moments(pieces: Outlines) -> Moments:
 def outlines(
     body: Complex, facets: np.ndarray, group: np.ndarray, normal: np.ndarray, tolerance: float
 ) -> Outlines:
-    """Return the outlines of groups of facets, each in one plane and together convex.
+    """Return the outlines of groups of facets, each plane and convex.
 
-    facets, group : int arrays [m], groups in order; normal : float array [n, d], of each group.
+    facets, group : int arrays [m], sorted by group. normal : float array [n, d], of each group.
     """
     pairs = np.stack([group, facets], axis=1)
     if body.dim > 1:
@@ -153,10 +153,10 @@ def outlines(
 
 
 def around(x: np.ndarray, of: np.ndarray, normal: np.ndarray, tolerance: float) -> Outlines:
-    """Return convex pieces by the corners that they have, in any order, float array [m, d].
+    """Return convex pieces from their unordered corners, float array [m, d], m.
 
-    of : int array [m], the piece of each corner, in order. normal : float array [n, d], of each.
-    In space without corners within the tolerance (m) of the line between those beside them.
+    of : int array [m], sorted, the piece of each corner. normal : float array [n, d], of each
+    piece. In space without corners within the tolerance (m) of the line between their neighbours.
     """
     number, dim = len(normal), x.shape[1]
     if dim == 2:
@@ -184,7 +184,7 @@ def around(x: np.ndarray, of: np.ndarray, normal: np.ndarray, tolerance: float) 
 
 
 def frames(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return two unit vectors [n, 3] that make right-handed frames with normals [n, 3]: the first
+    """Return two unit vectors [n, 3] that complete normals [n, 3] to right-handed frames; the first
     is horizontal, along the strike, or east in a horizontal plane."""
     strike = np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(normal))], axis=1)
     length = np.linalg.norm(strike, axis=1)[:, None]
@@ -193,8 +193,8 @@ def frames(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def frames_of(normal: np.ndarray) -> np.ndarray:
-    """Return the frames of contacts [c, d, d] with these normals [c, d]: in the plane the tangent
-    is the normal rotated to the left, in space they are the strike and the line of dip."""
+    """Return contact frames [c, d, d] from normals [c, d]: normal, then in the plane the normal
+    rotated to the left, in space the directions of strike and dip."""
     tangents: tuple[np.ndarray, ...] = ()
     if (dim := normal.shape[1]) == 2:
         tangents = (np.stack([-normal[:, 1], normal[:, 0]], axis=1),)
@@ -204,12 +204,11 @@ def frames_of(normal: np.ndarray) -> np.ndarray:
 
 
 def upwards(frame: np.ndarray) -> np.ndarray:
-    """Return what turns tractions and jumps in frames of joints [w, d, d] into those on the side
-    above the joint, relative to that below, in the frame of the normal that points up: matrices
-    [w, d, d] for rows, of 0, 1 and -1. Of a vertical joint the normal points along y, or else
-    along x, instead.
+    """Return matrices [w, d, d] that turn row vectors of tractions and jumps in joint frames [w, d,
+    d] into those of the upper side relative to the lower, in the frame of the upward normal.
 
-    In the plane they are the same; in space the numbers of the blocks would decide their sign.
+    Entries are 0, 1 and -1. A vertical joint's normal points along y, or else along x. In the plane
+    the values do not change; in space their sign would otherwise depend on block numbers.
     """
     normal = frame[:, 0]
     last = normal.shape[1] - 1 - (np.abs(normal[:, ::-1]) > LEVEL).argmax(axis=1)
@@ -218,8 +217,8 @@ def upwards(frame: np.ndarray) -> np.ndarray:
 
 
 def widths(body: Complex, half: Halves) -> np.ndarray:
-    """Return the least width of each cell [count], m: over its facets, the distance of the vertex
-    that is farthest inwards; infinite of a cell without facets."""
+    """Return the least width of each cell [count], m: over its facets, the least distance to the
+    farthest vertex; infinite for cells without facets."""
     number = np.arange(len(half.cell))
     pairs, which = composed(np.stack([number, half.cell], axis=1), body.corners(half))
     depth = body.places(half)[which]
@@ -231,8 +230,7 @@ def widths(body: Complex, half: Halves) -> np.ndarray:
 
 
 def least_angles(body: Complex, half: Halves) -> np.ndarray:
-    """Return the least interior angle between facets of each cell [count], degrees; 180 without
-    any."""
+    """Return the least angle between facets of each cell [count], degrees; 180 without any."""
     found = np.full(body.count, 180.0)
     if body.dim == 1:
         return found
@@ -248,7 +246,7 @@ def least_angles(body: Complex, half: Halves) -> np.ndarray:
 
 
 def along_and_across(normal: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return tensors [n, d, d] of a value along the normal and another across it, [n, 2]."""
+    """Return tensors [n, d, d] with one value along the normal and one across it, values [n, 2]."""
     along = np.einsum("qi,qj->qij", normal, normal)
     across = np.eye(normal.shape[1]) - along
     return values[:, 0, None, None] * along + values[:, 1, None, None] * across

@@ -1,8 +1,8 @@
-"""Blocks of the user's own, and the cells of a mesh, as a cell complex.
+"""Build a cell complex from the user's blocks or from the cells of a mesh.
 
-Vertices within a tolerance are one. Faces of two blocks that lie in one plane are cut into what
-they share and convex pieces of the rest. Then edges are split at the vertices on them, so that
-pieces have the same edges as those beside them.
+Vertices within a tolerance are merged. Coplanar faces of two blocks are cut into their overlap and
+convex pieces of the rest. Edges are then split at the vertices on them, so that neighbouring pieces
+share edges.
 """
 
 from collections import defaultdict
@@ -23,14 +23,14 @@ from jointwave.cases.geometry.solid_blocks import near, pieces_between, solids_o
 from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.gmsh_file import MeshError
 
-SAME = 1e-6  # of the extent: corners of blocks that are one
-ALIKE = 1.0  # degrees: sets that are as near to a contact's plane but for this are not told apart
+SAME = 1e-6  # tolerance over the extent within which corners of blocks are merged
+ALIKE = 1.0  # degrees: least difference in angle that decides between two sets for a contact
 
 
 def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] | None]:
-    """Return the blocks of a file, or the cells of a mesh, as a complex, and the names of its
-    groups of joints, which are its joint sets; None of a file without groups. Raises MeshError, in
-    one phrase."""
+    """Return the blocks of a file, or the cells of a mesh, as a complex; and the names of its
+    groups of joints, which become its joint sets, or None without groups. Raises MeshError, in one
+    phrase."""
     given = read_cells(path) if mesh else read_blocks(path)
     tolerance = SAME * float(np.ptp(given.x, axis=0).max())
     number = merged(given.x, tolerance)
@@ -40,7 +40,7 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
     face, beyond = (np.array([one[k] for one in pieces]) for k in (1, 2))
     cell = np.repeat(np.arange(len(solids)), [len(one.faces) for one in solids])
     normals = np.concatenate([one.normals for one in solids])
-    shared = beyond != OUTSIDE  # faces that share a piece have one normal, that of the longest
+    shared = beyond != OUTSIDE  # faces that share a piece take the normal of the longest
     group = joined(np.stack([face[shared], beyond[shared]], axis=1), len(normals))
     length = [np.linalg.norm(np.ptp(x, axis=0)) for one in solids for x in one.faces]
     order = np.argsort(length)[::-1]
@@ -59,7 +59,7 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
     body = from_facets(places, [loops[k] for k in held], sides[held], normal[face[held]])
     if given.joints is None:
         return _with_sides(body), None
-    if mesh:  # all vertices that coincide are those of its joints
+    if mesh:  # only vertices of joints may coincide
         used = np.unique([v for one in given.blocks for part in one for loop in part for v in loop])
         times = np.bincount(number[used], minlength=len(number))
         times[number[[v for one in given.joints.values() for facet in one for v in facet]]] = 0
@@ -70,8 +70,8 @@ def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] 
 
 
 def _with_joints(body: Complex, blocks: list, given: Given, number: np.ndarray) -> Complex:
-    """Return a complex with the joints of a file: what two blocks share is of the group that all
-    facets of both are in. Raises MeshError for facets elsewhere, or in several groups."""
+    """Return a complex with the joint sets of a file's groups. Raises MeshError for joint facets
+    between no two blocks, and for blocks that share facets of several groups."""
     assert given.joints is not None
     owners, groups = defaultdict[frozenset, set](set), defaultdict[frozenset, set](set)
     for cell, parts in enumerate(blocks):
@@ -102,7 +102,7 @@ def _with_joints(body: Complex, blocks: list, given: Given, number: np.ndarray) 
 
 
 def _with_vertices(x: np.ndarray, pieces: list[np.ndarray], tolerance: float) -> list[Loop]:
-    """Return pieces by their vertices, each once, in space with those of others on their edges."""
+    """Return pieces as loops of vertices, in space with the vertices of others on their edges."""
     loops = [one[one != np.roll(one, 1)].tolist() for one in pieces]
     if x.shape[1] == 2:
         return loops
@@ -130,9 +130,9 @@ def _with_vertices(x: np.ndarray, pieces: list[np.ndarray], tolerance: float) ->
 def with_sets(
     body: Complex, groups: Iterable[str] | None, names: Sequence[str], normals: np.ndarray
 ) -> Complex:
-    """Return a complex whose joint sets are those of a scene, by their names and unit normals
-    [sets, d]: for groups of a file those of their names, in a file without groups the only set, or
-    the one whose planes are nearest to those of a contact. Raises MeshError."""
+    """Return a complex with the joint set indices of a scene, from names and unit normals [sets,
+    d]. Groups of a file match sets by name; without groups a contact gets the only set, or the one
+    whose planes are nearest in angle. Raises MeshError."""
     plain, joint_set = [name.lower() for name in names], body.joint_set.copy()
     if groups is not None:
         groups = list(groups)
@@ -161,8 +161,9 @@ def with_sets(
 
 
 def _with_sides(body: Complex) -> Complex:
-    """Return a complex with sides: 0 of the outer boundary, 1 + k of opening k, from left to right.
-    Raises MeshError for rock in pieces, for an outline that touches itself and for joints on it."""
+    """Return a complex with sides: 0 for the outer boundary, 1 + k for opening k, from left to
+    right. Raises MeshError for separate pieces, an outline that touches itself, and joints on
+    it."""
     middle, outer = facet_moments(body).centroid, ~body.inner
     wrong = (body.joint_set != NO_SET) & outer
     if wrong.any():
@@ -191,8 +192,8 @@ def _with_sides(body: Complex) -> Complex:
 
 
 def outlines_of(body: Complex) -> list[np.ndarray]:
-    """Return the corners of rock in the plane, or of the box around it in space, and of each of its
-    openings, float arrays [n, d], m."""
+    """Return the corners of the rock in the plane, or of its bounding box in space, and of each
+    opening, float arrays [n, d], m."""
     facet, vertex = body.corners_of_facets().T
     side = np.where(body.inner, -1, body.side)
     own = [body.vertices[vertex[side[facet] == k]] for k in range(side.max() + 1)]

@@ -1,5 +1,5 @@
-"""Contacts across a pair of opposite sides of a domain, whose facets overlap when one is moved by
-the domain's extent, with a joint there or without."""
+"""Contacts across pairs of periodic sides: facets that overlap once shifted by the domain's
+extent."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,13 +12,13 @@ from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.geometry.measure import Outlines, around, outline_moments
 from jointwave.cases.geometry.relations import sums
 
-SAME = 1e-9  #: of the domain's extent: lengths below which places on a side are one
+SAME = 1e-9  #: tolerance over the domain's extent: nearer places on a side coincide
 
 
 class Across(NamedTuple):
-    """Contacts across a pair of periodic sides, of a joint set where a joint lies along both sides:
-    block i at the far side, block j, in no order, at the near one. Ends and normals are those at
-    block i. shift : [d], m, offset of blocks j. sides : names of the pair, the near one first."""
+    """Contacts across a pair of periodic sides, of a joint set where a joint runs along both sides.
+    Block i is at the far side, block j at the near one, in no order; outlines and normals are those
+    at i. shift : [d], m, offset of blocks j. sides : names of the pair, the near one first."""
 
     contacts: Facets
     shift: np.ndarray
@@ -26,7 +26,7 @@ class Across(NamedTuple):
 
 
 def of_all(blocks: Blocks, across: Sequence[Across], key: str) -> np.ndarray:
-    """Return an array of all contacts, those across periodic sides last."""
+    """Return an array over all contacts, those across periodic sides last."""
     parts = blocks.contacts, *(one.contacts for one in across)
     return np.concatenate([getattr(part, key) for part in parts])
 
@@ -37,10 +37,9 @@ def contacts_across(
     """Return the contacts of blocks i at the high end of an axis with blocks j at its low end.
 
     Normals and outlines are those at blocks i; i and j are in no order. sides : names of the low
-    and the high end. names : of the joint sets, which are the first ones of all.
+    and the high end. names : of the scene's joint sets, which come first.
 
-    Raises GeometryError where rock faces no rock, a joint runs along one of the sides only, or ends
-    at one of them only.
+    Raises GeometryError where rock faces no rock, or a joint runs along or ends at one side only.
     """
     outer, joints, x = blocks.boundary, len(names), blocks.body.vertices
     least, key = SAME * float(np.ptp(x, axis=0).max()), f"boundaries.{sides[0]}"
@@ -75,7 +74,7 @@ def contacts_across(
 
 
 def _sliver(shapes: np.ndarray, least: float) -> np.ndarray:
-    """Return the areas of shapes below which they are none, m2."""
+    """Return the area below which an overlap is ignored, m2."""
     return least * np.maximum(shapely.length(shapes) / 4, 1)
 
 
@@ -88,8 +87,8 @@ def _facets_at(blocks: Blocks, axis: int, sign: int) -> np.ndarray:
 
 
 def _polygon(corners: np.ndarray, axis: int) -> shapely.Polygon:
-    """Return a piece of a side, corners [n, d], m, in the plane of the other axes; in fewer
-    dimensions with a width of 1 across what there is."""
+    """Return a piece of a side, corners [n, d], m, as a polygon in the other axes; missing axes
+    have unit width."""
     own = np.delete(corners, axis, axis=1)
     if own.shape[1] == 2:
         return shapely.Polygon(own)
@@ -98,8 +97,7 @@ def _polygon(corners: np.ndarray, axis: int) -> shapely.Polygon:
 
 
 def _outlines(shared: np.ndarray, axis: int, place: float, normal: np.ndarray) -> Outlines:
-    """Return pieces of a side, polygons as those of `_polygon`, by their corners around a normal
-    [n, d] of each."""
+    """Return the outlines of polygons made by `_polygon`, around a normal [n, d] each."""
     corners, of = shapely.get_coordinates(shared, return_index=True)
     own = np.unique(np.column_stack([of, corners[:, : normal.shape[1] - 1]]), axis=0)
     x = np.insert(own[:, 1:], axis, place, axis=1)
@@ -114,14 +112,14 @@ def _check_ends(
     names: Sequence[str],
     least: float,
 ) -> None:
-    """Raise GeometryError where a joint ends at one of two sides only, amid rock.
+    """Raise GeometryError where a joint ends at only one of two sides, inside rock.
 
-    rock : what the sides share without a joint there, polygons.
+    rock : polygons, m, that the sides share without a joint.
     """
     if not len(rock):
         return
     x, contacts, traces = blocks.body.vertices[:, axis], blocks.contacts, []
-    for place in (x.min(), x.max()):  # where joints end: set, line in the side, a point of it
+    for place in (x.min(), x.max()):  # traces of joints: set, line in the side, a point of it
         found: list[tuple[int, shapely.Geometry, np.ndarray]] = []
         for k in np.flatnonzero(contacts.of_joints(len(names))):
             corners = contacts.outlines.of(k)

@@ -1,5 +1,4 @@
-"""Convex cells that make a convex one with a neighbour, and are joined to it: pieces of a block, or
-slivers, too thin or too pointed, which are refused where nothing fits."""
+"""Merging of convex cells: pieces of one block, or slivers that are too thin or too pointed."""
 
 from collections.abc import Iterable, Sequence
 
@@ -12,17 +11,17 @@ from jointwave.cases.geometry.relations import groups
 
 
 class Pieces:
-    """Some cells of a complex, to be joined: a piece is known by the number of one of its cells.
+    """Cells of a complex that are to be merged; one of its cells gives each piece its number.
 
     Attributes
     ----------
-    root : int array [count], the piece that each cell is a part of.
-    thickness : of the cells, volume over surface, m, by their numbers.
+    root : int array [count], the piece that each cell belongs to.
+    thickness : volume over surface of each cell, m, by cell number.
     """
 
     def __init__(self, body: Complex, cells: np.ndarray, across: np.ndarray, kept: int = 0) -> None:
-        """cells : bool array [count]. across : of which facets they may be joined, bool array [f].
-        kept : joint sets, the first ones, that are kept where another neighbour fits as well."""
+        """Set up cells (bool [count]) that merge across some facets (bool [f]); kept : number of
+        leading joint sets across which they merge only as a last choice."""
         self.body, self.root, self.half = body, np.arange(body.count), body.beside(cells)
         moments, self._place = facet_moments(body, self.half.facet), body.places(self.half)
         corners, self._area = body.corners(self.half), moments.size
@@ -37,8 +36,8 @@ class Pieces:
         }
 
     def near(self, piece: int) -> list[int]:
-        """Return the pieces beside one that it may be joined to, that across the largest face
-        first, but those beyond joints that are kept last."""
+        """Return the pieces that one may merge with, by decreasing area of the shared face; those
+        across kept joints come last."""
         own = self._halves[piece][self._open[self._halves[piece]]]
         beside, which = np.unique(self.root[self.half.across[own]], return_inverse=True)
         area = np.bincount(which, self._area[own])
@@ -46,8 +45,8 @@ class Pieces:
         return beside[np.lexsort([beside, -area, joint])].tolist()
 
     def fitting(self, piece: int, near: Iterable[int], tolerance: float) -> int | None:
-        """Return the first of some pieces beside another that make a convex one with it, whose
-        corners are all within its outer planes; None where there is none."""
+        """Return the first candidate whose union with a piece is convex (all corners within all
+        outer planes), or None."""
         for other in near:
             both = np.append(self._halves[piece], self._halves[other])
             across = self.half.across[both]
@@ -59,8 +58,8 @@ class Pieces:
         return None
 
     def joined(self, order: Iterable[int], tolerance: float) -> tuple[Complex | None, list[int]]:
-        """Return the complex with some cells, in order, joined to the first one beside them that
-        they fit; None where none fits any. And the cells that fit none."""
+        """Merge cells, in order, with their first convex neighbour. Return the complex, or None if
+        nothing merged; and the cells without a convex neighbour."""
         stuck = list[int]()
         for cell in order:
             if self.root[cell] != cell:
@@ -77,18 +76,18 @@ class Pieces:
 
 
 def clipped(corners: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Return the corners of the part of a convex polygon or segment, in any dimension, where s, of
-    each corner, is not negative."""
+    """Return the corners of the part of a convex polygon or segment where s >= 0; s : value at each
+    corner [n]."""
     after, ahead = np.roll(corners, -1, axis=0), np.roll(s, -1)
     crosses = s * ahead < 0
     if len(corners) == 2:
-        crosses[1] = False  # no way back
+        crosses[1] = False  # a segment is open: no edge from its end to its start
     t = np.where(crosses, s / np.where(crosses, s - ahead, 1.0), 0.0)[:, None]
     pairs = np.stack([corners, corners + t * (after - corners)], axis=1)
     return pairs.reshape(-1, corners.shape[1])[np.stack([s >= 0, crosses], axis=1).ravel()]
 
 
-#: Cuts of a sliver, at most: parts that made slivers of neighbours could pass round for ever.
+#: Most cuts per sliver: merging parts could otherwise turn neighbours into slivers for ever.
 PARTS = 4
 NO_FIT = ", and joining it to a neighbour leaves no convex block"
 
@@ -103,10 +102,10 @@ def without_slivers(
 ) -> Complex:
     """Return a complex without blocks thinner (m) or more pointed (degrees) than the limits.
 
-    joins : each is joined to the neighbour across its largest face with which it is convex, or part
-    by part, cut where the faces of neighbours end at it; else, and where nothing fits, it is
-    refused. kept : joint sets, the first ones, that a sliver is joined across only where it fits no
-    other neighbour. Raises Sliver.
+    joins : merge each sliver with the neighbour across its largest face that makes a convex union,
+    or cut it along a neighbour's face and merge part by part; otherwise refuse slivers. kept :
+    number of leading joint sets that a sliver merges across only as a last choice. Raises Sliver
+    where slivers are refused or nothing fits.
     """
     most = 0
     while True:
@@ -133,8 +132,8 @@ def without_slivers(
 def _joined(
     body: Complex, thin: list[int], tolerance: float, kept: int
 ) -> tuple[Complex | None, int]:
-    """Return a complex with slivers joined to neighbours; where none can be, with a part of one of
-    them joined. None, and the first that fits nowhere, where no part can be."""
+    """Merge slivers with neighbours, or, if none can be, a part of one of them. Return the complex,
+    or None if no part can be merged; and the first sliver that fits nowhere."""
     chosen = np.zeros(body.count + 1, bool)
     chosen[thin] = True
     chosen[body.sides[chosen[body.sides].any(axis=1)].ravel()] = True
@@ -148,8 +147,8 @@ def _joined(
 
 
 def _parted(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> Complex | None:
-    """Return a complex with a sliver cut along a face of a neighbour that ends at it, and a part
-    joined to a neighbour; None where no such cut leaves one that fits."""
+    """Return a complex with a sliver cut along a neighbour's face and one part merged with a
+    neighbour, or None if no such cut leaves a part that fits."""
     alone, chosen = np.arange(body.count) == cell, np.isin(np.arange(body.count + 1), near)
     half = body.beside(chosen[:-1])
     own = body.vertices[body.corners(body.beside(alone))[:, 1]]

@@ -1,4 +1,4 @@
-"""Files with blocks of the user's own: VTU, gmsh, COMPAS and OBJ."""
+"""Read the user's blocks from VTU, gmsh, COMPAS and OBJ files."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,9 +18,9 @@ from jointwave.cases.gmsh_file import (
 )
 
 LARGEST = 500_000_000  # bytes, of a file
-FLAT = 1e-9  # of the extent: what z may vary by in the plane
+FLAT = 1e-9  # tolerated range of z in a plane model, over the extent
 JOINT, ROCK = "joint", "rock"
-#: Faces of the cells of VTU and gmsh, by meshio's names; those of polyhedra are in the file.
+#: Faces of VTU and gmsh cells by meshio's names; polyhedra list their faces in the file.
 FACES = {
     kind: [[int(corner) for corner in face] for face in faces.split()]
     for kind, faces in {
@@ -40,12 +40,11 @@ Part = list[Loop]
 class Given(NamedTuple):
     """The blocks of a file.
 
-    x : float array [v, d], m; in the plane if all have one z.
-    blocks : the parts of each, by polygons of vertices: a part in the plane is one, in space it is
-        bounded by some, all counter-clockwise as seen from outside, or all clockwise.
-    names : of the blocks, in messages.
-    joints : facets by their vertices, for the name of each group "joint NAME" in small letters;
-        None of a file that has no groups.
+    x : float array [v, d], m; two columns if all z are equal.
+    blocks : the parts of each block. A part is a list of polygons of vertices: one in the plane,
+    the bounding faces in space, all counter-clockwise as seen from outside, or all clockwise.
+    names : of the blocks, for messages.
+    joints : facets as vertices, for each group "joint NAME" in lower case; None without groups.
     """
 
     x: np.ndarray
@@ -55,7 +54,7 @@ class Given(NamedTuple):
 
 
 def read_blocks(path: Path) -> Given:
-    """Return the blocks of a file; raises MeshError, in one phrase, where it has none."""
+    """Return the blocks of a file. Raises MeshError, in one phrase, if it has none."""
     readers = {".vtu": _vtu, ".msh": _gmsh, ".json": _compas, ".obj": _obj}
     if path.suffix.lower() not in readers:
         raise MeshError(f"must be a file of blocks: {', '.join(readers)}")
@@ -81,10 +80,10 @@ def read_blocks(path: Path) -> Given:
 
 
 def read_cells(path: Path) -> Given:
-    """Return the cells of a gmsh file as blocks: those of its groups "rock...", all of one kind.
+    """Return the cells of a gmsh file as blocks: those of the groups "rock...", all of one kind.
     Raises MeshError."""
     tagged = read_tagged(path)
-    cells = tagged.cells[:, FROM_GMSH[tagged.kind]]  # which is back to gmsh's order as well
+    cells = tagged.cells[:, FROM_GMSH[tagged.kind]]  # the permutation is its own inverse
     parts = _parts(MESHIO[tagged.kind], cells)
     found = {name: one for name, one in tagged.facets.items() if name.startswith(JOINT)}
     joints = {_plain(name): one.tolist() for name, one in found.items()}
@@ -94,7 +93,7 @@ def read_cells(path: Path) -> Given:
 
 
 def _plain(name: str) -> str:
-    """Return the NAME of a group "joint NAME" in small letters."""
+    """Return the NAME of a group "joint NAME" in lower case."""
     return name.strip().lower()[len(JOINT) :].strip(" _-:")
 
 
@@ -111,7 +110,7 @@ def _vtu(path: Path) -> Given:
 
 
 def _parts(kind: str, cells: np.ndarray) -> list[Part]:
-    """Return the polygons of each cell of a kind that meshio knows."""
+    """Return the polygons of each cell of a meshio cell type."""
     if kind in POLYGONS:
         return [[cell] for cell in np.asarray(cells).tolist()]
     if kind.startswith("polyhedron"):
@@ -123,8 +122,8 @@ def _parts(kind: str, cells: np.ndarray) -> list[Part]:
 
 
 def _gmsh(path: Path) -> Given:
-    """One block for each physical surface or volume, but for each elementary one of groups
-    "rock..." and of a file without groups."""
+    """Return one block per physical surface or volume; one per elementary entity in groups
+    "rock..." and in files without groups."""
     mesh, _ = read_file(path, "gmsh")
     dim = max((block.dim for block in mesh.cells), default=0)
     none = [np.zeros(len(block.data), np.int64) for block in mesh.cells]
@@ -158,7 +157,7 @@ def _gmsh(path: Path) -> Given:
 
 
 def _compas(path: Path) -> Given:
-    """Meshes and polyhedra in any of COMPAS's structures: assemblies, models or lists of them."""
+    """Return meshes and polyhedra in any COMPAS structure: assemblies, models or lists of them."""
     x: list[list[float]] = []
     objects: dict[str, list[Loop]] = {}
     for vertices, faces in _meshes(read_json(path, LARGEST)):
@@ -171,13 +170,13 @@ def _compas(path: Path) -> Given:
 
 
 def _of_objects(x: list[list[float]], objects: dict[str, list[Loop]]) -> Given:
-    """Return blocks by the faces of each."""
+    """Return blocks from the faces of each."""
     blocks = [[faces] for faces in objects.values()]
     return Given(np.reshape(x, (-1, 3)), blocks, list(objects), None)
 
 
 def _meshes(node) -> Iterator[tuple[dict, list]]:
-    """Yield the places of vertices by key, and the faces by these keys, of each mesh."""
+    """Yield the vertices' coordinates by key, and the faces as keys, of each mesh."""
     if isinstance(node, list):
         for one in node:
             yield from _meshes(one)
@@ -193,12 +192,12 @@ def _meshes(node) -> Iterator[tuple[dict, list]]:
         if moved and not np.allclose(moved["data"]["matrix"], np.eye(4), atol=0, rtol=0):
             raise MeshError("has blocks with a transformation, must have them in place")
         for key, one in node.items():
-            if key not in ("edge", "contacts", "interactions"):  # not of blocks
+            if key not in ("edge", "contacts", "interactions"):  # these hold no blocks
                 yield from _meshes(one)
 
 
 def _obj(path: Path) -> Given:
-    """The faces of each object (o), or of each group (g) where there are no objects."""
+    """Return the faces of each object (o), or of each group (g) if there are no objects."""
     lines = [line.split() for line in read_text(path, LARGEST).replace("\\\n", " ").splitlines()]
     mark = "o" if any(words[:1] == ["o"] for words in lines) else "g"
     x: list[list[float]] = []

@@ -1,4 +1,4 @@
-"""Joint sets: parallel planes, all through the domain or from joint to joint of other sets."""
+"""Joint sets as parallel planes, through the whole domain or between joints of other sets."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError
 from jointwave.cases.geometry.cut import Planes, cut, planes_of
 
-Stops = dict[str, np.ndarray]  #: of sets that one ends at, the signed number of the joint below
+Stops = dict[str, np.ndarray]  #: for sets that another ends at, each cell's joint number below
 
 #: Half the width of the uniform distribution of spacings, in standard deviations.
 SPREAD = 3**0.5
@@ -21,14 +21,13 @@ class PlaneSet:
 
     Attributes
     ----------
-    name : by which others end at it.
+    name : that other sets refer to.
     normal : float array [d], unit vector.
-    along : float array [d - 1, d], unit vectors in the plane, by which the sense of an offset along
-        it is counted.
+    along : float array [d - 1, d], unit vectors in the plane, which define the sense of offsets.
     spacing : m, along the normal; None for one plane.
     through : float array [d], m, a point of one of the planes.
     ends_at : names of sets at whose planes these end.
-    offset : of the planes from row to row between those that they end at, over the spacing.
+    offset : of the planes between neighbouring rows bounded by `ends_at`, over the spacing.
     scatter : coefficient of variation of the spacing, uniformly distributed. seed : of the scatter.
     regions : indices of the regions of rock that it cuts, -1 for rock in none; None for all.
     """
@@ -46,7 +45,7 @@ class PlaneSet:
 
     @property
     def widest(self) -> float:
-        """The largest possible distance of two planes, m; infinite for a single one."""
+        """Largest possible distance between neighbouring planes, m; infinite for a single one."""
         return inf if self.spacing is None else self.spacing * (1 + SPREAD * self.scatter)
 
 
@@ -55,16 +54,15 @@ def cut_by_sets(
 ) -> Complex:
     """Return a complex cut by all sets, those that others end at first.
 
-    needed : how many sets, the first ones, must cut something; all where it is absent.
-
-    Raises GeometryError where one of them cuts nothing, or the point of a single joint is outside.
+    needed : number of leading sets that must cut something; all where absent. Raises GeometryError
+    if one of them does not, or if the point of a single joint is outside.
     """
     needed = len(sets) if needed is None else needed
     numbers, ordered = Stops(), in_order(sets)
     index = {one.name: i for i, one in enumerate(sets)}
     for one in ordered:
         i, ends = index[one.name], set(one.ends_at)
-        for other in reversed(ordered):  # with those at which they end themselves
+        for other in reversed(ordered):  # and the sets at which those end
             ends.update(other.ends_at if other.name in ends else ())
         stops = {name: numbers[name] for name in index if name in ends}
         found = cut(body, _planes(body, sets, i, stops, tolerance), tolerance)
@@ -78,8 +76,8 @@ def cut_by_sets(
 
 
 def in_order(sets: Sequence[PlaneSet]) -> list[PlaneSet]:
-    """Return sets in the order in which they are cut; raises ValueError, in one phrase, where they
-    end at each other."""
+    """Return sets in the order in which they are cut. Raises ValueError, in one phrase, if they end
+    at each other."""
     ordered: list[PlaneSet] = []
     while len(ordered) < len(sets):
         done = {one.name for one in ordered}
@@ -94,9 +92,9 @@ def in_order(sets: Sequence[PlaneSet]) -> list[PlaneSet]:
 def _planes(
     body: Complex, sets: Sequence[PlaneSet], index: int, stops: Stops, tolerance: float
 ) -> Planes:
-    """Return the planes of a set in every part of the rock between the joints that it ends at.
+    """Return the planes of a set in each part of the rock between the joints at which it ends.
 
-    stops : of each set that it ends at the number of each cell.
+    stops : for each of these sets, the joint number of each cell.
     """
     one = sets[index]
     table = np.stack([*stops.values(), np.zeros(body.count, np.int64)], axis=1)
@@ -128,9 +126,9 @@ def _planes(
 
 
 def _shifts(one: PlaneSet, stops: Stops, parts: np.ndarray, sets: Sequence[PlaneSet]) -> np.ndarray:
-    """Return by how much planes are offset in each part, m along the normal: by a part of the
-    spacing more from each joint that they end at to the next, in the sense of the first direction
-    in that joint that is not along the planes; not at all from joints parallel to them."""
+    """Return the offset of the planes in each part, m along the normal. From each joint at which
+    they end to the next it grows by a share of the spacing, in the sense of the first direction in
+    that joint that is not parallel to the planes."""
     by_name, shift = {other.name: other for other in sets}, np.zeros(len(parts))
     for k, name in enumerate(stops):
         if name in one.ends_at:
@@ -146,8 +144,8 @@ def places_between(
     """Return the places of planes from below `low` to above `high`, m, and the signed number of the
     first.
 
-    Scattered spacings are uniformly distributed about their mean; those above and below the origin,
-    and of each part, are streams of their own, so that they do not depend on the domain's size.
+    Scattered spacings are uniformly distributed about their mean. Each part, above and below its
+    origin, has its own random stream, so that places do not depend on the domain's size.
     """
     assert one.spacing is not None
     if not one.scatter:
@@ -157,7 +155,7 @@ def places_between(
     assert one.seed is not None
     half, away = SPREAD * one.scatter, []
     folded = [2 * k if k >= 0 else -2 * k - 1 for k in map(int, part)]
-    for side, reach in enumerate((high - origin, origin - low)):  # one beyond it at least
+    for side, reach in enumerate((high - origin, origin - low)):  # to one plane past the reach
         count = max(int(np.ceil(reach / (one.spacing * (1 - half)))), 0) + 1
         draws = np.random.default_rng([one.seed, side, *folded]).random(count)
         places = np.cumsum(one.spacing * (1 + half * (2 * draws - 1)))

@@ -1,4 +1,4 @@
-"""Convex blocks of a file: the hulls of their corners, and what is between two of them."""
+"""Convex blocks of a file as hulls of their corners, and the pieces between neighbours."""
 
 from typing import NamedTuple
 
@@ -15,11 +15,11 @@ from jointwave.cases.geometry.solids import corners_of
 from jointwave.cases.gmsh_file import MeshError
 
 GRAZING = 1e-12  # sine of the angle between planes below which they are parallel
-AGAINST = -0.999  # cosine of the angle between normals of faces that may lie against each other
+AGAINST = -0.999  # cosine between the normals of faces that may touch
 
 
 def near(x: np.ndarray) -> str:
-    """Return the place of some points in words."""
+    """Return the mean place of some points as text."""
     return " near [{}]".format(", ".join(f"{place:.6g}" for place in x.mean(axis=0)))
 
 
@@ -27,9 +27,8 @@ Piece = tuple[np.ndarray, int, int]
 
 
 class Solid(NamedTuple):
-    """A convex block: its corners [n, d], m; the corners [k, d] of each face, around its normal out
-    of the block, in the plane from one end to the other; these normals [f, d], and their distances
-    from the origin [f], m."""
+    """A convex block: corners [n, d], m; corners [k, d] of each face, around its outward normal (in
+    the plane the two ends); normals [f, d]; and distances of the faces from the origin [f], m."""
 
     corners: np.ndarray
     faces: list[np.ndarray]
@@ -43,8 +42,8 @@ class Solid(NamedTuple):
     def split(
         self, x: np.ndarray, face: int, tolerance: float
     ) -> tuple[np.ndarray | None, list[np.ndarray]]:
-        """Return the part of a convex piece, by its corners, that lies on a face of the block, in
-        whose plane it is, and convex pieces of the rest; None and the piece where there is none."""
+        """Split a convex piece (corners in a face's plane) into its overlap with the face and
+        convex pieces of the rest; return None and the piece itself without overlap."""
         sine = np.linalg.norm(
             self.normals - np.outer(self.normals @ self.normals[face], self.normals[face]), axis=1
         )
@@ -66,7 +65,7 @@ class Solid(NamedTuple):
 
 
 def width_of(x: np.ndarray) -> float:
-    """Return the length of a piece in the plane, in space its area over its length, m."""
+    """Return a piece's length in the plane, or its area over its length in space, m."""
     length = float(np.linalg.norm(np.ptp(x, axis=0)))
     if x.shape[1] == 2:
         return length
@@ -75,8 +74,8 @@ def width_of(x: np.ndarray) -> float:
 
 
 def solids_of(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -> list[Solid]:
-    """Return the hulls of blocks by their parts, which these must fill; x : float array [v, d], m.
-    Raises MeshError for a block whose parts do not, within the tolerance (m)."""
+    """Return the hulls of blocks; x : float array [v, d], m, their vertices. Raises MeshError for a
+    block that is flat or does not fill its hull within the tolerance (m)."""
     more = ", or open, or has a face turned inwards" if x.shape[1] == 3 else ""
     found, sizes = list[Solid](), _volumes(x, blocks, names, tolerance)
     for block, size, name in zip(blocks, sizes, names, strict=True):
@@ -94,8 +93,7 @@ def solids_of(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -
 
 
 def _solid(x: np.ndarray, hull: ConvexHull, tolerance: float) -> Solid:
-    """Return a block by its hull, whose simplices in the plane of a larger one are a part of that
-    face."""
+    """Return a block from its hull; coplanar simplices make one face."""
     edges = np.diff(x[hull.simplices], axis=1).swapaxes(0, 1)
     size = edges[0] if x.shape[1] == 2 else np.cross(*edges)
     left, faces, normals, places = np.linalg.norm(size, axis=1), [], [], []
@@ -117,7 +115,7 @@ def _solid(x: np.ndarray, hull: ConvexHull, tolerance: float) -> Solid:
 
 
 def _volumes(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -> np.ndarray:
-    """Return the volumes that the faces of blocks enclose, in the plane the areas [n]; raises
+    """Return the volumes (in the plane: areas) [n] that the faces of blocks enclose. Raises
     MeshError for a face that is not plane."""
     parts = [part for block in blocks for part in block]
     block = np.repeat(np.arange(len(blocks)), list(map(len, blocks)))
@@ -141,10 +139,9 @@ def _volumes(x: np.ndarray, blocks: list, names: list[str], tolerance: float) ->
 
 
 def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> list[Piece]:
-    """Return the faces of blocks in convex pieces: what two share, once, and what is left of each,
-    by their corners [k, d], m; the face, numbered over all blocks, of the block that their normal
-    points out of; and that of the block beyond, or OUTSIDE. Raises MeshError for blocks that
-    overlap."""
+    """Return the faces of blocks in convex pieces: what two blocks share, once, and the rest of
+    each. A piece has its corners [k, d], m; its face, numbered over all blocks; and the face on the
+    other side, or OUTSIDE. Raises MeshError for blocks that overlap."""
     first = np.cumsum([0, *(len(one.faces) for one in solids)])
     found, left = list[Piece](), [[face] for one in solids for face in one.faces]
     for i, j in _close(solids, tolerance):
@@ -172,7 +169,7 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
 
 
 def _close(solids: list[Solid], tolerance: float) -> list[list[int]]:
-    """Return pairs of blocks i < j whose boxes touch in more than an edge, at most."""
+    """Return pairs of blocks i < j whose bounding boxes touch in at least a face."""
     low, high = (np.array([at(one.corners, axis=0) for one in solids]) for at in (np.min, np.max))
     tree = shapely.STRtree(shapely.box(*(low[:, :2] - tolerance).T, *(high[:, :2] + tolerance).T))
     pairs = tree.query(tree.geometries)
@@ -182,7 +179,7 @@ def _close(solids: list[Solid], tolerance: float) -> list[list[int]]:
 
 
 def _check_apart(one: Solid, other: Solid, names: str, tolerance: float) -> None:
-    """Raise MeshError where a ball fits into two blocks."""
+    """Raise MeshError if a ball larger than the tolerance fits into both blocks."""
     normals, places = (np.concatenate([one[k], other[k]]) for k in (2, 3))
     low, size = one.corners.min(axis=0), float(np.ptp(one.corners, axis=0).max())
     planes = np.column_stack([np.ones(len(normals)), normals])

@@ -1,8 +1,7 @@
 """Solids that cut a complex along their faces: openings, regions of rock, bays of an outline.
 
-In the plane a solid is a polygon, in space the prism of a polygon; a box is the prism of a
-rectangle. Cells are cut along the planes of the faces that pass through them, so that they stay
-convex, and pieces of one cell are joined again as far as they make a convex one.
+A solid is a polygon in the plane, or a prism in space. The face planes cut the cells that they pass
+through, so that cells stay convex; pieces of one cell are then merged as far as they stay convex.
 """
 
 from collections.abc import Sequence
@@ -16,19 +15,19 @@ from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.geometry.pieces import Pieces, clipped
 from jointwave.cases.geometry.relations import groups
 
-STRAIGHT = 1e-9  #: sine of the angle below which a corner of a polygon turns nowhere
-ROCK = -1  #: in place of a region: rock outside all regions
+STRAIGHT = 1e-9  #: sine of the turn below which a polygon's corner is collinear
+ROCK = -1  #: instead of a region index: rock outside all regions
 
 
 @dataclass(frozen=True)
 class Solid:
-    """A polygon in the plane, or the prism of one in space.
+    """A polygon in the plane, or a prism in space.
 
     Attributes
     ----------
-    corners : float array [k, 2], m, counter-clockwise in the base's own axes.
-    axes : float array [d, d], unit vectors: the two of the base, and in space that along the prism.
-    span : from where to where the prism reaches along its axis, m; not used in the plane.
+    corners : float array [k, 2], m, counter-clockwise in the axes of the base.
+    axes : float array [d, d], unit vectors: two of the base, and in space the prism's axis.
+    span : start and end of the prism along its axis, m; unused in the plane.
     """
 
     corners: np.ndarray
@@ -36,8 +35,8 @@ class Solid:
     span: tuple[float, float] = (0.0, 0.0)
 
     def faces(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Return the corners [n, d], m, and the outward normal [d] of faces; of ends that are not
-        convex their convex hull."""
+        """Return the corners [n, d], m, and the outward normal [d] of each face; ends of a prism
+        that are not convex are replaced by their convex hull."""
         start, end = self.corners, np.roll(self.corners, -1, axis=0)
         out = np.stack([end[:, 1] - start[:, 1], start[:, 0] - end[:, 0]], axis=1)
         out = out / np.hypot(*out.T)[:, None] @ self.axes[:2]
@@ -51,7 +50,7 @@ class Solid:
         return [*zip(sides, out, strict=True), *ends]
 
     def points(self) -> np.ndarray:
-        """Return the corners of all faces, one face after the other [n, d], m."""
+        """Return the corners of all faces, face by face [n, d], m."""
         return np.concatenate([corners for corners, _ in self.faces()])
 
     @property
@@ -70,23 +69,23 @@ class Solid:
 
 
 def polygon_solid(polygon: shapely.Geometry) -> Solid:
-    """Return a polygon in the plane, m."""
+    """Return the solid of a polygon in the plane, m."""
     return Solid(corners_of(polygon), np.eye(2))
 
 
 def prism(corners: np.ndarray, axis: int, span: tuple[float, float]) -> Solid:
-    """Return the prism of a polygon along the axis 0, 1 or 2 in space.
+    """Return the prism of a polygon along axis 0, 1 or 2 in space.
 
-    corners : float array [k, 2], m, of the coordinates along the two other axes, in cyclic order
-    (y and z along x, z and x along y, x and y along z). span : m, along the axis.
+    corners : float array [k, 2], m, coordinates along the two other axes in cyclic order (y and z
+    along x, z and x along y, x and y along z). span : m, along the axis.
     """
     own = corners_of(shapely.Polygon(corners))
     return Solid(own, np.eye(3)[[(axis + 1) % 3, (axis + 2) % 3, axis]], span)
 
 
 def corners_of(polygon: shapely.Geometry) -> np.ndarray:
-    """Return the corners [n, 2] of a polygon counter-clockwise from the leftmost, and of these the
-    lowest, one: in whichever order they are given. Those that turn nowhere are left out."""
+    """Return the corners [n, 2] of a polygon, counter-clockwise from the lowest of the leftmost;
+    collinear corners are omitted."""
     points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
@@ -97,7 +96,8 @@ def corners_of(polygon: shapely.Geometry) -> np.ndarray:
 
 @dataclass(frozen=True)
 class HalfSpace:
-    """What lies on the side of a plane that its normal [d] points to; through : a point of it."""
+    """The half-space that the normal [d] of a plane points into; through : point of the plane,
+    m."""
 
     normal: np.ndarray
     through: np.ndarray
@@ -110,9 +110,8 @@ class HalfSpace:
 def cut_into_regions(
     body: Complex, regions: Sequence[Solid | HalfSpace], tolerance: float
 ) -> Complex:
-    """Return a complex cut along the boundaries of regions, each cell with its region: the last one
-    that contains it. What the faces of a solid cut of the rock around it `taken_out` joins again.
-    """
+    """Return a complex cut along region boundaries, each cell with the last region that contains
+    it. `taken_out` later merges the cuts that the face planes leave in the surrounding rock."""
     for k in reversed(range(len(regions))):
         one = regions[k]
         if isinstance(one, Solid):
@@ -128,15 +127,14 @@ def cut_into_regions(
 
 
 def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: float) -> Complex:
-    """Return a complex less some solids, each with the side that its faces become, its blocks cut
-    in convex parts along these faces; pieces of a block of one rock are joined as far as they stay
-    convex."""
-    whole = np.arange(body.count)  # the block that a cell is a part of
+    """Return a complex without some solids, each given with the side number of its faces. Blocks
+    are cut along the face planes; parts of one rock are merged again as far as they stay convex."""
+    whole = np.arange(body.count)  # the original block of each cell
     for solid, side in solids:
         near = _near(body, body.halves(), solid.points(), tolerance)
         for face, normal in solid.faces():
             passed = _passed(body, near, face, normal, tolerance)
-            split = near & np.isin(whole, whole[passed])  # all of the block, to choose its pieces
+            split = near & np.isin(whole, whole[passed])  # all cells of the block are cut
             found = cut(body, one_plane(normal, face[0] @ normal, split), tolerance)
             body, near, whole = found.body, near[found.parent], whole[found.parent]
         gone = np.zeros(body.count, bool)
@@ -144,7 +142,7 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
         gone[at] = solid.contains(body.centres(body.beside(near))[at])
         body = body.removed(gone, side)
     whole_again: Complex | None = body
-    while whole_again is not None:  # the thinnest first, each across its largest face
+    while whole_again is not None:  # thinnest piece first, across its largest face
         body, cuts = whole_again, _through_rock(whole_again)
         pieces = Pieces(body, np.isin(np.arange(body.count), body.sides[cuts]), cuts)
         order = sorted(pieces.thickness, key=lambda cell: (pieces.thickness[cell], cell))
@@ -153,7 +151,7 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
 
 
 def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
-    """Raise GeometryError if a block had to be cut through intact rock beside an opening."""
+    """Raise GeometryError if a block had to be cut through intact rock at an opening."""
     cuts = np.flatnonzero(_through_rock(body))
     if not len(cuts):
         return
@@ -170,7 +168,7 @@ def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
 
 
 def _near(body: Complex, half: Halves, corners: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which of some cells' boxes meet that of some points [n, d], bool array [count]."""
+    """Return which cells' bounding boxes meet that of some points [n, d], bool array [count]."""
     low, high = body.extents(half, body.vertices)
     meets = (low <= corners.max(axis=0) + tolerance) & (high >= corners.min(axis=0) - tolerance)
     return meets.all(axis=1)
@@ -180,7 +178,7 @@ def _passed(
     body: Complex, cells: np.ndarray, face: np.ndarray, normal: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """Return which of some cells (bool array [count]) a convex face, float array [n, d], passes
-    through, deeper than the tolerance."""
+    through by more than the tolerance (m)."""
     half = body.beside(cells)
     low, high = body.extents(half, (body.vertices - face[0]) @ normal)
     crossed = (low < -tolerance) & (high > tolerance) & _near(body, half, face, tolerance)
@@ -197,5 +195,5 @@ def _passed(
 
 
 def _through_rock(body: Complex) -> np.ndarray:
-    """Return which facets are cuts through rock of one region, bool array [f]."""
+    """Return which facets are cuts through the rock of one region, bool array [f]."""
     return body.in_rock & (body.joint_set == NO_SET)

@@ -1,1 +1,1 @@
-"""A rock mass: the domain of a scene cut by joint sets into convex blocks, in any dimension."""
+"""The domain of a scene, cut by joint sets into convex blocks in any dimension."""

@@ -1,4 +1,4 @@
-"""Joint sets of a scene as sets of planes, and its regions of rock."""
+"""A scene's joint sets as sets of planes, and its regions of rock."""
 
 from collections.abc import Sequence
 from math import atan2, degrees, hypot
@@ -11,12 +11,12 @@ from jointwave.cases.geometry.solids import ROCK, HalfSpace, Solid, polygon_soli
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import REST, IntactRock, Region, RockMass
 
-#: What planes have from their joint set as it is.
+#: Attributes that a plane set copies from its joint set.
 SAME = ("name", "normal", "spacing", "offset", "scatter", "seed")
 
 
 def dips_of(normal: np.ndarray) -> dict[str, float]:
-    """Return the dip, degrees, and in space the dip direction of planes with a unit normal [d]."""
+    """Return the dip, degrees, and in space the dip direction, of planes with a unit normal [d]."""
     *across, up = np.array(normal) + 0.0  # no -0
     if len(across) == 1:
         return {"dip": round((degrees(atan2(-across[0], up)) + 90) % 180 - 90, 12)}
@@ -26,7 +26,7 @@ def dips_of(normal: np.ndarray) -> dict[str, float]:
 
 
 def plane_sets(sets: Sequence[JointSet], regions: Sequence[Region] = ()) -> list[PlaneSet]:
-    """Return the planes of joint sets in a domain with some regions of rock."""
+    """Return the plane sets of joint sets in a domain with regions of rock."""
     numbers = {REST: -1, **{one.name: k for k, one in enumerate(regions)}}
     found = []
     for one in sets:
@@ -37,8 +37,7 @@ def plane_sets(sets: Sequence[JointSet], regions: Sequence[Region] = ()) -> list
 
 
 def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
-    """Return the region that contains each place (float array [n, d], m), or ROCK: the last of
-    those whose line it lies above, or whose outline it lies in."""
+    """Return the last region that contains each place (float array [n, d], m), or ROCK."""
     found = np.full(len(places), ROCK)
     for k, one in enumerate(bounded(regions)):
         found[one.contains(places)] = k
@@ -46,7 +45,7 @@ def region_at(regions: Sequence[Region], places: np.ndarray) -> np.ndarray:
 
 
 def rocks_of(scene: RockMass) -> list[IntactRock]:
-    """Return the rock of each region, and last that of the rest."""
+    """Return the rock of each region, then the rock outside all regions."""
     return [*(one.rock(scene.rock) for one in scene.regions), scene.rock]
 
 
@@ -56,8 +55,8 @@ def rocks_beside(scene: RockMass, one: JointSet) -> list[IntactRock]:
 
 
 def within(scene: RockMass, sets: Sequence[JointSet]) -> list[RockMass]:
-    """Return each region, and last the rest, as a scene of one rock with those of some joint sets
-    that cut it; none is validated."""
+    """Return each region, then the rest, as a scene of one rock with the joint sets that cut it;
+    these scenes are not validated."""
     names = [*(one.name for one in scene.regions), REST]
     return [
         scene.model_copy(
@@ -77,7 +76,7 @@ def strata(regions: Sequence[Region]) -> list[Region]:
 
 
 def bounded(regions: Sequence[Region]) -> list[Solid | HalfSpace]:
-    """Return what bounds each region."""
+    """Return the boundary of each region."""
     return [
         HalfSpace(one.normal, np.array(one.through))
         if one.outline is None

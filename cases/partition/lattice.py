@@ -1,12 +1,11 @@
-"""Further cuts through intact rock, for rigid blocks: lattices that contain the joints.
+"""Cuts through intact rock that complete the joints to a lattice of rigid blocks.
 
-`numerics.dem.block` asks for blocks of about that size. Every direction of joints gets parallel
-planes, at a whole part of the spacing, or at about the size beside joints that are alone. Across
-directions in which no joints cut, planes are added: at right angles, or, for joints of one
-direction or none in rock with a Poisson effect, those of ISOTROPIC. A side along which planes run
-is met in the middle of a block where it is quiet, since the motion of a block is that of the
-lattice in its middle, and at a plane elsewhere. Every region of rock has a lattice of its own, with
-a plane along its boundary. Rock no wider than the size asked for is not cut.
+`numerics.dem.block` sets the size of blocks. Every joint direction gets parallel planes: at a whole
+part of the spacing, or at about this size next to single joints. Planes are added across directions
+in which no joints cut: at right angles, or those of ISOTROPIC in rock with a Poisson effect whose
+joints have one direction or none. A quiet side parallel to planes lies at the middle of a block,
+which moves like the lattice there; other sides lie at a plane. Each region of rock has its own
+lattice and a plane along its boundary. Rock no wider than the size is not cut.
 """
 
 from math import inf
@@ -24,11 +23,11 @@ from jointwave.cases.schema.rock_mass import REST, RockMass
 
 #: Blocks from a side to the nearest plane, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
-ALIKE = 1e-11  #: sine of the angle between directions that are one
+ALIKE = 1e-11  #: sine of the angle below which directions are equal
 ACROSS = 3**0.5 / 2
-#: By the number of directions in which rock is cut, planes beside those across the first direction
-#: that give long waves one speed in all of them and any Poisson's ratio: normals, and spacings over
-#: that of the first. Equilateral triangles, or cubes of five tetrahedra each.
+#: For 2 or 3 directions in which rock is cut: the planes besides those across the first one, as
+#: normals and spacings over the first spacing. They give long waves one speed in all directions and
+#: any Poisson's ratio: equilateral triangles, or cubes of five tetrahedra each.
 ISOTROPIC: dict[int, list[tuple[tuple[float, ...], float]]] = {
     2: [((0.5, -ACROSS), 1.0), ((-0.5, -ACROSS), 1.0)],
     3: [
@@ -39,8 +38,8 @@ ISOTROPIC: dict[int, list[tuple[tuple[float, ...], float]]] = {
 
 
 class Place(NamedTuple):
-    """Rock of one region: its corners [n, d], m; the centres of the facets around it [f, d], m,
-    those inside the domain first, and how many blocks from each the next plane lies [f]."""
+    """Rock of one region: corners [n, d], m; centres of its boundary facets [f, d], m, those inside
+    the domain first; and the distance from each facet to the next plane in blocks [f]."""
 
     corners: np.ndarray
     facets: np.ndarray
@@ -48,12 +47,12 @@ class Place(NamedTuple):
     tolerance: float
 
     def extent(self, normal: np.ndarray) -> float:
-        """Return how far rock reaches along a normal, m."""
+        """Return the extent of the rock along a normal, m."""
         return float(np.ptp(self.corners @ normal))
 
     def rest(self, normal: np.ndarray) -> float | None:
-        """Return the part of a block from the end of rock along a normal to the plane next to it;
-        None where no side runs along the planes there."""
+        """Return the distance from the rock's end along a normal to the next plane, in blocks; None
+        if no side there is parallel to the planes."""
         end = (self.corners @ normal).max()
         found = self.rests[self.facets @ normal >= end - self.tolerance]
         return float(found[0]) if len(found) else None
@@ -61,10 +60,7 @@ class Place(NamedTuple):
 
 def further_sets(scene: RockMass) -> list[JointSet]:
     """Return the sets of cuts between the joints of a scene; without numerics.dem.block only those
-    along periodic sides.
-
-    Raises SceneError, in one line, for joints whose planes have no lattice.
-    """
+    along periodic sides. Raises SceneError, in one line, for joints that no lattice can contain."""
     from scipy.spatial import ConvexHull
 
     block = scene.numerics.dem.block
@@ -99,7 +95,7 @@ def further_sets(scene: RockMass) -> list[JointSet]:
 
 
 def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
-    """Return the sets of cuts of a scene of one rock."""
+    """Return the sets of cuts of a scene with one rock."""
     dim, found = scene.domain.dimension, []
     groups = by_direction(scene.joint_sets)
     normals = [group[0].normal for group in groups]
@@ -127,8 +123,8 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
         found += [_planes(place, axis, block, anchor) for axis in wide]
     thin = [axis for axis in across if place.extent(axis) <= block]
     if normals and thin:
-        # Cuts along periodic sides across directions in which rock is not cut: there blocks touch
-        # their own images, and share the rock's compliance with the other cuts.
+        # Cuts along periodic sides where rock is not cut otherwise: blocks touch their own images
+        # there, and these contacts share the rock's compliance with the other cuts.
         corners, sides = np.array(scene.domain.corners), shape_of(scene.domain).sides
         for k in sorted({sides.index(side) // 2 for side in scene.boundaries.sides("periodic")}):
             if np.abs(np.array(thin)[:, k]).max() > ALIKE:
@@ -138,7 +134,8 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
 
 
 def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
-    """Return unit vectors in the directions in which no joints cut, upwards first without any."""
+    """Return unit vectors along directions that no joints cut, without joints the vertical
+    first."""
     normals = np.array([group[0].normal for group in groups]).reshape(-1, dim)
     rank = np.linalg.matrix_rank(normals, tol=ALIKE) if groups else 0
     if rank == 2 < dim:
@@ -150,15 +147,15 @@ def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
 def squared(scene: RockMass) -> bool:
     """Return whether cuts across joints of one direction are at right angles to them.
 
-    Triangles and tetrahedra can have any Poisson's ratio (`material.effective_medium`), boxes none;
-    but the faces of boxes can run along periodic sides, which cut no block in two then.
+    Triangles and tetrahedra can have any Poisson's ratio (`material.effective_medium`), boxes only
+    0; but box faces can run along periodic sides, which then split no block.
     """
     fit = all(np.abs(one.normal).max() == 1 for one in scene.joint_sets)
     return scene.rock.intact_poisson == 0 or (fit and bool(scene.boundaries.sides("periodic")))
 
 
 def by_direction(sets: list[JointSet]) -> list[list[JointSet]]:
-    """Return joint sets in groups of one direction."""
+    """Return joint sets grouped by direction."""
     groups: list[list[JointSet]] = []
     for one in sets:
         pairs = ([one.normal, group[0].normal] for group in groups)
@@ -181,8 +178,8 @@ def _planes(
     through: list[float] | None = None,
     fixed: bool = False,
 ) -> JointSet:
-    """Return planes about `block` (m) apart, one of them through a point where that is `fixed`,
-    that meet the sides along them as they should."""
+    """Return planes about `block` (m) apart that keep the required distance from parallel sides;
+    `fixed` : one plane goes through the given point."""
     heights, anchor = place.corners @ normal, np.array(through or place.corners.mean(axis=0))
     low, high, at = float(heights.min()), float(heights.max()), float(anchor @ normal)
     below, above, spacing = place.rest(-normal), place.rest(normal), block
@@ -203,6 +200,6 @@ def _planes(
 
 
 def _divided(reach: float, rest: float, block: float) -> float:
-    """Return the spacing, about `block`, of which a reach (m) is a whole number more than rest."""
+    """Return the spacing near `block` that divides a reach (m) into whole blocks plus `rest`."""
     whole = max(round(reach / block - rest), 0)
     return reach / (whole + rest) if whole + rest else reach

@@ -1,4 +1,4 @@
-"""The blocks of a pillar: a domain L x a x a with one set of joints across it."""
+"""The blocks of a pillar: a box cut by one set of joints across its axis."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,22 +13,21 @@ from jointwave.cases.geometry.sets import SPREAD
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.segment import Part
 
-#: Sides of a pillar: its ends, and those along it.
+#: Sides of a pillar: its two ends, and the lateral surface.
 SIDES = "start", "end", "sides"
-TOLERANCE = 1e-6  # of the thinnest block, below which points are one point
+TOLERANCE = 1e-6  # tolerance over the thinnest block: nearer points coincide
 
 
 def blocks_of_pillar(
     scene: Scene, dim: int = 1, layers: Mapping[int, float] | None = None
 ) -> Blocks:
-    """Return the blocks of a pillar from the loaded end on, of length alone, or in the plane or in
-    space: then y runs along it, and its axis is x = z = 0.
+    """Return the blocks of a pillar from the loaded end on, in 1 to 3 dimensions; in more than one,
+    y runs along the pillar and its axis is x = z = 0.
 
-    dim : 1 to 3. `joint_set` of a contact is 0 of [joints], 1 + k of soft layer k, and NO_SET where
-    it is no joint; `body.region` of a block is the index of its part in `scene.parts`, `side` of a
-    facet of the boundary one in SIDES. layers :
-    thickness (m) of joints that are blocks of their own, half of it on either side, regions after
-    the parts, without joints on either side.
+    `joint_set` of a contact is 0 for [joints], 1 + k for soft layer k, and NO_SET without a joint;
+    `body.region` is the index of a block's part in `scene.parts`; `side` of a boundary facet is an
+    index in SIDES. layers : thickness (m) of joints that become blocks of their own, without joints
+    at their faces; half of it is taken from each neighbour, and their regions follow the parts.
     """
     y, along = block_ends(scene), dim // 2
     law, blocks = np.where(welds(scene), NO_SET, 0), [one.blocks for one in scene.parts]
@@ -58,7 +57,7 @@ def blocks_of_pillar(
 
 
 def block_ends(scene: Scene) -> np.ndarray:
-    """Return where the blocks begin and the last one ends, m [N + 1]."""
+    """Return the starts of all blocks and the end of the last, m [N + 1]."""
     spacing, found = scene.scatter.spacing if scene.scatter else 0.0, []
     for i, one in enumerate(scene.parts):
         thickness = np.ones(one.blocks)
@@ -70,17 +69,17 @@ def block_ends(scene: Scene) -> np.ndarray:
 
 
 def welds(scene: Scene) -> np.ndarray:
-    """Return which contacts between blocks are no joints but for soft layers, as rock on both sides
-    is intact, bool array [N - 1]."""
+    """Return which contacts have intact rock on both sides, bool array [N - 1]: only soft layers
+    make these joints."""
     intact = [_is_intact(scene, one) for one in scene.parts]
     of_block = np.repeat(intact, [one.blocks for one in scene.parts])
     return of_block[1:] & of_block[:-1]
 
 
 def drawn(scene: Scene, part: int, what: int, count: int) -> np.ndarray:
-    """Return random numbers [count] of mean 0 and standard deviation 1, uniformly distributed.
+    """Return uniformly distributed random numbers [count] of mean 0 and standard deviation 1.
 
-    what : 0 for spacings, 1 for compliances; each, and each part, has a stream of its own.
+    what : 0 for spacings, 1 for compliances; each has its own random stream in each part.
     """
     assert scene.scatter is not None
     draws = np.random.default_rng([scene.scatter.seed, what, part]).random(count)

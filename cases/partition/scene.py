@@ -1,4 +1,4 @@
-"""The blocks of a rock-mass scene, and their memory, estimated in advance."""
+"""The blocks of a rock-mass scene, and an estimate of the memory that cutting them needs."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -23,18 +23,18 @@ from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import Region, RockMass
 from jointwave.cases.size import excess
 
-#: Default least width of a block over the smallest spacing, or the size of the domain without one.
+#: Default least width of a block over the least spacing, or over the domain's size without one.
 THIN = 1e-2
-#: The same where cuts through intact rock make a lattice, if that is possible. The thinnest block
-#: decides the step, but what is joined has no strain: with a third of the spacing a wave's error
-#: does not fall with the blocks, with 0.03 it does and steps are three times as many.
+#: The same where cuts through intact rock make a lattice, if possible. The thinnest block sets the
+#: time step, but merged rock has no strain: with a third of the spacing a wave's error does not
+#: fall with the block size; with 0.03 it does, at three times as many steps.
 LATTICE = 0.03
 #: Bytes of memory for each block while a domain of two or three dimensions is cut.
 OF_BLOCK = {2: 2500, 3: 16_000}
 
 
 def rock_of(shape: Shape, regions: Sequence[Region]) -> Complex:
-    """Return a domain in cells of one region of rock each."""
+    """Return a domain as cells of one region of rock each."""
     return cut_into_regions(shape.hull, bounded(regions), shape.tolerance)
 
 
@@ -44,14 +44,12 @@ def blocks_of_domain(
     further: Sequence[JointSet] = (),
     regions: Sequence[Region] = (),
 ) -> Blocks:
-    """Return a domain in convex blocks without slivers; of a mesh, its cells. `side` of their
-    boundary is an index in the `sides` of the domain's shape.
+    """Return a domain in convex blocks without slivers, or the cells of its mesh. `side` of a
+    boundary facet is an index in the `sides` of the domain's shape.
 
-    further : sets of cuts, of which some or all may be where joints are. Of such a lattice thin
-    blocks at the sides, which would decide the step, are joined to others where that is possible.
-
-    Raises GeometryError, with place and cause, where a joint set cuts nothing, a block is not
-    convex or a sliver is left.
+    further : sets of cuts, which may lie where joints are. Their thin blocks at the sides, which
+    would set the time step, are merged with others where possible. Raises GeometryError, with place
+    and cause, where a joint set cuts nothing, a block is not convex or a sliver is left.
     """
     shape, every = shape_of(domain), [*sets, *further]
     tolerance = shape.tolerance
@@ -75,7 +73,7 @@ def blocks_of_domain(
 
 
 def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) -> float:
-    """Return the width below which a block is a sliver, m; thin : the default over a spacing."""
+    """Return the width below which a block is a sliver, m; thin : default width over a spacing."""
     if domain.least_width is not None:
         return domain.least_width
     spacings = [one.spacing for one in sets if one.spacing is not None]
@@ -85,11 +83,10 @@ def least_width(domain: Domain, sets: Sequence[JointSet], thin: float = THIN) ->
 def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks:
     """Return the blocks of a rock mass, in the plane or in space.
 
-    further : sets of cuts through intact rock, beyond the scene's own sets; their contacts have
-    indices beyond those of the scene's sets.
+    further : sets of cuts through intact rock, with indices after those of the scene's own sets.
 
-    Raises SceneError, in one line with place and cause, where it cannot be cut into convex blocks,
-    periodic sides do not fit each other, or the blocks would take more memory than a run may.
+    Raises SceneError, in one line with place and cause, where the rock cannot be cut into convex
+    blocks, periodic sides do not match, or the blocks need more memory than a run may use.
     """
     size = partition_bytes(scene, further)
     if why := excess(size):
@@ -109,8 +106,8 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
 
 
 def across_periodic(scene: RockMass, blocks: Blocks) -> list[Across]:
-    """Return the contacts across the periodic sides of a scene; raises GeometryError where they do
-    not fit each other."""
+    """Return the contacts across a scene's periodic sides. Raises GeometryError where they do not
+    match."""
     x, dim, names = blocks.body.vertices, blocks.body.dim, [one.name for one in scene.joint_sets]
     return [
         Across(
@@ -122,8 +119,8 @@ def across_periodic(scene: RockMass, blocks: Blocks) -> list[Across]:
 
 
 def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
-    """Return about how many blocks a domain is cut into: one more than there are joints, and
-    crossings of two joints and of three, openings and ends of joints left out."""
+    """Return the approximate number of blocks: one plus the joints and the crossings of two or
+    three of them, ignoring openings and ends of joints."""
     if domain.given is not None:
         return float(domain.given.count)
     corners, dim, count = np.array(domain.corners), domain.dimension, 1.0
@@ -146,6 +143,6 @@ def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
 
 
 def partition_bytes(scene: RockMass, further: Sequence[JointSet] = ()) -> float:
-    """Return the memory for the blocks of a rock mass while they are cut, bytes."""
+    """Return the memory for cutting the blocks of a rock mass, bytes."""
     each = OF_BLOCK[scene.domain.dimension]
     return each * block_count(scene.domain, [*scene.joint_sets, *further])

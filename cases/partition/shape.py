@@ -1,5 +1,4 @@
-"""The shape of a scene's domain: its outer boundary, what is taken out of its convex hull, and the
-part of either that a pressure acts on."""
+"""The shape of a scene's domain: outer boundary, openings and bays, and loaded boundary parts."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -21,14 +20,14 @@ from jointwave.cases.geometry.solids import (
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.pulse import PlaneLoad
 
-#: By the number of dimensions: two for each axis, and what lies on none of them.
+#: Sides by the number of dimensions: two for each axis, and the rest of the outline.
 SIDES = {
     2: ("left", "right", "bottom", "top", "outline"),
     3: ("left", "right", "front", "back", "bottom", "top", "outline"),
 }
-TOLERANCE = 1e-9  #: of the domain's size: lengths below which points are one point
-SAME = 1e-6  #: the same of the blocks of a file in space
-BESIDE = 1e-6  #: of the domain's size: tolerated distance of points and edges from the boundary
+TOLERANCE = 1e-9  #: tolerance over the domain's size: nearer points coincide
+SAME = 1e-6  #: the same for the blocks of a file in space
+BESIDE = 1e-6  #: tolerated distance of points and edges from the boundary, over the size
 
 
 Face = tuple[np.ndarray, np.ndarray]  #: corners [k, d], m, and outward unit normal [d]
@@ -40,11 +39,11 @@ class Shape:
 
     Attributes
     ----------
-    hull : its convex hull, or the box around it in space, as one cell.
-    faces : of its outer boundary, in the plane edges, counter-clockwise.
-    solids : what is taken out of the hull, with the side that its faces become: 0 for a bay of the
-        outline, 1 + k for opening k.
-    tolerance : length below which points are one point, m.
+    hull : its convex hull in the plane, its bounding box in space, as one cell.
+    faces : of its outer boundary; in the plane edges, counter-clockwise.
+    solids : removed from the hull, with the side number of their faces: 0 for a bay of the outline,
+        1 + k for opening k.
+    tolerance : distance below which points coincide, m.
     given : the blocks of a file in space, if these are the domain.
     """
 
@@ -56,28 +55,28 @@ class Shape:
 
     @property
     def low(self) -> np.ndarray:
-        """The lower corner of the box around it [d], m."""
+        """Lower corner of the bounding box [d], m."""
         return self.hull.vertices.min(axis=0)
 
     @property
     def high(self) -> np.ndarray:
-        """The upper corner of the box around it [d], m."""
+        """Upper corner of the bounding box [d], m."""
         return self.hull.vertices.max(axis=0)
 
     @property
     def size(self) -> float:
-        """The diagonal of the box around it, m."""
+        """Diagonal of the bounding box, m."""
         return float(np.linalg.norm(self.high - self.low))
 
     @property
     def sides(self) -> tuple[str, ...]:
-        """Names of the sides, those of openings last."""
+        """Names of the sides, openings last."""
         numbers = self.given.side if self.given is not None else [side for _, side in self.solids]
         return (*SIDES[self.hull.dim], *(f"opening {k}" for k in range(max(numbers, default=0))))
 
     def sides_of(self, facets: Outlines, side: np.ndarray) -> np.ndarray:
-        """Return the index in `sides` of facets of the outer boundary (0) and of openings (1 + k);
-        side : which, int array."""
+        """Return the index in `sides` of boundary facets; side : 0 for the outer boundary, 1 + k
+        for opening k, int array."""
         return np.where(side == 0, self._along(facets), len(SIDES[self.hull.dim]) - 1 + side)
 
     def _along(self, pieces: Outlines) -> np.ndarray:
@@ -99,13 +98,12 @@ class Shape:
         return [self.faces[k] for k in np.flatnonzero(along == index)]
 
     def edges(self, side: str | None = None, opening: int | None = None) -> np.ndarray:
-        """Return the edges of a side, or of an opening, in the plane, from point to point, m
-        [n, 2, 2]."""
+        """Return the edges of a side or an opening in the plane [n, 2, 2], m, from end to end."""
         found = [corners for corners, _ in self.faces_of(side, opening)]
         return np.array(found).reshape(-1, 2, 2)
 
     def normals(self) -> dict[str, np.ndarray]:
-        """Return the unit normals [n, d] out of the faces of each side that there is."""
+        """Return the outward unit normals [n, d] of the faces of each existing side."""
         found = {side: self.faces_of(side) for side in SIDES[self.hull.dim]}
         return {side: np.array([n for _, n in faces]) for side, faces in found.items() if faces}
 
@@ -128,7 +126,7 @@ def shape_of(domain: Domain) -> Shape:
         hull, outer = polygon(corners_of(whole.convex_hull)), polygon_solid(whole)
         left = whole.convex_hull - whole
         least = TOLERANCE * np.hypot(*np.ptp(np.reshape(left.bounds, (2, 2)), axis=0)) ** 2
-        parts = (one for one in shapely.get_parts(left) if one.area > least)  # but round-off
+        parts = (one for one in shapely.get_parts(left) if one.area > least)  # beyond round-off
         bays = [polygon_solid(one) for one in parts]
     found = Shape(hull, outer.faces(), [(bay, 0) for bay in bays], 0.0)
     found = replace(found, tolerance=TOLERANCE * found.size)
@@ -150,14 +148,14 @@ def distance(point: np.ndarray, faces: list[Face]) -> float:
 
 
 def _faces(body: Complex, side: int, tolerance: float) -> list[Face]:
-    """Return the faces of the boundary of some cells that have a number of a side."""
+    """Return the boundary faces with a given side number."""
     half = body.halves(~body.inner & (body.side == side))
     found = outlines(body, half.facet, np.arange(len(half.facet)), half.outward, tolerance)
     return [(found.of(k), normal) for k, normal in enumerate(half.outward)]
 
 
 def _box(low: np.ndarray, high: np.ndarray) -> Solid:
-    """Return a box in space by two opposite corners [3], m."""
+    """Return a box in space from two opposite corners [3], m."""
     return prism(shapely.get_coordinates(shapely.box(*low[:2], *high[:2])), 2, (low[2], high[2]))
 
 
@@ -188,10 +186,8 @@ def _polygon(corners: list[list[float]], key: str) -> shapely.Polygon:
 
 
 def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> None:
-    """Refuse an opening that reaches out of the domain or into another one, or leaves no rock.
-
-    names : of what is taken out already.
-    """
+    """Raise GeometryError for an opening that leaves the domain, overlaps another or leaves no
+    rock; names : keys of the solids removed so far."""
     corners = solid.points()
     outside = np.array([shape.hull.depths(one).max() for one in corners]) < -shape.tolerance
     if outside.any():
@@ -217,8 +213,9 @@ def _check_opening(shape: Shape, solid: Solid, key: str, names: list[str]) -> No
 
 
 def covered(domain: Domain, load: PlaneLoad, ends: np.ndarray) -> np.ndarray:
-    """Return from where to where, of its length, a load between two points acts on each edge of its
-    side or its opening, [n, 2]; both 0 where it does not. ends : float array [n, 2, 2], m."""
+    """Return the part of each edge of a side or opening that a load between two points acts on, [n,
+    2]: start and end over the edge's length, both 0 off the load. ends : float array [n, 2, 2],
+    m."""
     outline = shape_of(domain)
     part, tolerance = np.zeros((len(ends), 2)), BESIDE * outline.size
     for start, end in loaded_lines(outline, load):
@@ -235,9 +232,9 @@ def covered(domain: Domain, load: PlaneLoad, ends: np.ndarray) -> np.ndarray:
 
 
 def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the straight parts of the boundary, from point to point, between the two points of a
-    load: of one face what is between them; of a side that has ends, from one to the other; else,
-    as of an opening, from the first to the second counter-clockwise around it."""
+    """Return the straight boundary parts, as pairs of points, between the two points of a load: the
+    segment between them on one face; from one to the other along an open side; else, as around an
+    opening, from the first to the second counter-clockwise."""
     lines, between = outline.edges(load.side, load.opening), np.array(load.between)
     if (_off(lines, between) <= BESIDE * outline.size).all(axis=0).any():
         return [(between[0], between[1])]

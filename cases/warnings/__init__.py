@@ -1,6 +1,6 @@
-"""Warnings of likely mistakes in a scene, one line each.
+"""Warnings about likely mistakes in a scene, one line each.
 
-No scene is refused: unusual values may be intended. `--strict` makes each line an error.
+No scene is refused: unusual values may be intended. `--strict` makes each warning an error.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ from jointwave.cases.warnings.sources import of_sources
 
 
 def warnings(scene: AnyScene) -> list[str]:
-    """Return warnings of probable mistakes in a scene, one line each."""
+    """Return warnings about likely mistakes in a scene, one line each."""
     own: Any = pillar
     if not scene.is_column:
         from jointwave.cases.warnings import rock_mass as own  # with shapely

@@ -1,4 +1,4 @@
-"""Warnings of likely mistakes in a pillar, one line each."""
+"""Warnings about likely mistakes in a pillar, one line each."""
 
 from collections.abc import Iterator
 from math import pi
@@ -13,13 +13,13 @@ from jointwave.cases.schema.tables import Rock
 from jointwave.cases.warnings.sources import of_resolution, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
-MOST_REFLECTED = 0.01  # by a quiet end on a rigid block, of the load's highest frequency
-MOST_AT_ENDS = 0.05  # of the same wave, apart between an end block's face and middle
-ON_JOINT = 1e-9  # of the pillar's length, and of a block: rounding of a receiver's place
+MOST_REFLECTED = 0.01  # reflection by a quiet end on a rigid block at the highest frequency
+MOST_AT_ENDS = 0.05  # difference of that wave between an end block's face and its middle
+ON_JOINT = 1e-9  # rounding of a receiver's place, over the pillar's length and over a block
 
 
 def met(scene: Scene) -> dict[str, Any]:
-    """Return what the load of a pillar meets."""
+    """Return the arguments of `of_sources` for a pillar."""
     load, p = scene.load, calibrate(scene)
     # Bending runs ahead of shear, up to the speed of the bar (Timoshenko 1921).
     shear_alone = load.is_across and not load.direction[1] and scene.motion.rotation == "none"
@@ -87,7 +87,7 @@ def _of_wavelength(scene: Scene) -> Iterator[str]:
 
 
 def _of_quiet_ends(scene: Scene) -> Iterator[str]:
-    """Warn of the reflection by a dashpot on a whole block; scenes with a source are exempt."""
+    """Warn of the reflection by a dashpot on a whole block, except in scenes with a source."""
     wave = shortest_wave(scene, calibrate(scene))
     if wave is None or scene.source is not None or wave.reflection <= MOST_REFLECTED:
         return
@@ -100,7 +100,7 @@ def _of_quiet_ends(scene: Scene) -> Iterator[str]:
 
 
 def _of_receivers_at_joints(scene: Scene) -> Iterator[str]:
-    """Warn of velocities at soft layers, across which they jump."""
+    """Warn of velocity receivers at soft layers, across which velocities jump."""
     for y in scene.record.velocity:
         for layer in scene.soft_layers:
             where, away = f"record.velocity = {y:g} m", abs(y - layer.y)
@@ -114,7 +114,7 @@ def _of_receivers_at_joints(scene: Scene) -> Iterator[str]:
 
 
 def _of_receivers_at_ends(scene: Scene) -> Iterator[str]:
-    """Warn of velocities beside ends that waves deform, where rigid blocks do not."""
+    """Warn of velocity receivers near ends that deform under waves, unlike rigid blocks."""
     wave, p, load = shortest_wave(scene, calibrate(scene)), calibrate(scene), scene.load
     sheared, walls = load.is_across or load.arm is not None, (0.0, scene.pillar.length)
     for (end, kind), wall, centre, rock in zip(

@@ -1,4 +1,4 @@
-"""Warnings of likely mistakes in a rock mass, one line each."""
+"""Warnings about likely mistakes in a rock mass, one line each."""
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations, product
@@ -24,14 +24,14 @@ from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.warnings.sources import of_resolution, onset
 
-NEAR = 0.05  # of the domain's size: distance of a receiver from the joint that it is meant for
-NEAR_SIDE = 1e-6  # of the domain's size: from a side to a place in the rock there
-COINCIDENT = 1e-9  # of the domain's size: distance of two joints that are one
-EARLY = 1e-6  # of the duration: by which a wave may seem to be early
+NEAR = 0.05  # largest distance of a receiver from its joint, over the domain's size
+NEAR_SIDE = 1e-6  # shift from a side into the rock, over the domain's size
+COINCIDENT = 1e-9  # distance below which joints coincide, over the domain's size
+EARLY = 1e-6  # rounding of a wave's onset, over the duration
 
 
 def met(scene: RockMass) -> dict[str, Any]:
-    """Return what waves and loads meet in a rock mass."""
+    """Return the arguments of `of_sources` for a rock mass."""
     keys, sets = ("friction_angle", "cohesion", "tensile_strength"), scene.entries("joint_sets")
     fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
     rock, acting = elastic_rock(scene.rock), [one for one in scene.pulses if one.amplitude]
@@ -54,8 +54,8 @@ def met(scene: RockMass) -> dict[str, Any]:
 
 
 def _closing(scene: RockMass) -> Iterator[tuple[str, float, float, float]]:
-    """Yield quiet sides, the stress that is added to the initial one, Pa, and the impedances of the
-    rock there without and with it, Pa s/m, where they differ most."""
+    """Yield quiet sides, the stress added to the initial one, Pa, and the impedances of the rock
+    there without and with it, Pa s/m, where these differ most."""
     if not any(one.maximum_closure for one in scene.joint_sets):
         return
     outline, added = shape_of(scene.domain), stresses(scene)[1]
@@ -69,12 +69,12 @@ def _closing(scene: RockMass) -> Iterator[tuple[str, float, float, float]]:
 
 
 def fastest(scene: RockMass) -> float:
-    """Return the largest speed of P in a rock mass, m/s."""
+    """Return the largest P-wave speed in a rock mass, m/s."""
     return max(float(elastic_rock(one).p_speed) for one in rocks_of(scene))
 
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
-    """Say where joints of two sets coincide: only the law of the first holds there."""
+    """Warn where joints of two sets coincide: only the law of the first set holds there."""
     plain = [
         (i, one)
         for i, one in enumerate(scene.joint_sets)
@@ -93,19 +93,19 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
 
 
 def spelled(place: Sequence[float]) -> str:
-    """Return a place in words, "[20, 30]"."""
+    """Return a place as text, "[20, 30]"."""
     return "[" + ", ".join(f"{x:g}" for x in place) + "]"
 
 
 def _away(scene: RockMass, one: JointSet, points: np.ndarray) -> np.ndarray:
-    """Return the distances of points [n, d] from the nearest joint of a set without scatter, m."""
+    """Return the distance of points [n, d] from the nearest joint of a set without scatter, m."""
     apart = np.subtract.outer(points @ one.normal, _places(scene, one, one.normal))
     return np.abs(apart).min(axis=1, initial=np.inf)
 
 
 def _places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
-    """Return where the joints of a set without scatter lie along a normal of theirs, m; none does
-    along a side that is not periodic."""
+    """Return the places of a set's joints along a normal, m, without scatter; joints along sides
+    are left out unless the scene has periodic sides."""
     origin, across = normal @ one.origin, np.array(scene.domain.corners) @ normal
     if one.spacing is None:
         return np.array([origin])
@@ -116,7 +116,7 @@ def _places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
 
 
 def _of_places(scene: RockMass) -> Iterator[str]:
-    """Say which spacings exceed the domain, and which receivers of joints are far from any."""
+    """Warn of spacings larger than the domain, and of joint receivers far from any joint."""
     corners, sets, dim = np.array(scene.domain.corners), scene.joint_sets, scene.domain.dimension
     for i, one in enumerate(sets):
         extent = float(np.ptp(corners @ one.normal))
@@ -127,7 +127,7 @@ def _of_places(scene: RockMass) -> Iterator[str]:
             )
     known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
     if not known or scene.domain.file_key:
-        return  # where joints run, only the cuts know
+        return  # the places of joints are known only after cutting
     places = np.array(scene.record.joints).reshape(-1, dim)
     away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
@@ -150,8 +150,8 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
-    """Say which blocks or elements are too large for the shortest wave: S at the highest frequency,
-    into which joints turn part of any wave."""
+    """Warn of blocks or elements too large for the shortest wave: S, into which joints convert part
+    of any wave, at the highest frequency."""
     frequency = highest_frequency(scene)
     if frequency is None:
         return
@@ -171,9 +171,9 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
 
 
 def _block_size(scene: RockMass) -> float | None:
-    """Return how long the blocks of the joint sets are, m: the domain's size unless two sets, in
-    space three, cut it, or one across which all waves travel. None where no joints have a spacing:
-    rigid blocks then need a size of their own."""
+    """Return the length of the blocks of the joint sets, m: the domain's size unless two sets
+    (three in space) cut it, or one that all waves cross at right angles. None if no joints have a
+    spacing: rigid blocks then need a given size."""
     spacings = sorted(one.spacing for one in scene.joint_sets if one.spacing)
     if not spacings:
         return None
@@ -182,7 +182,7 @@ def _block_size(scene: RockMass) -> float | None:
     if len(scene.joint_sets) == 1 and waves is not None:
         along = scene.joint_sets[0].frame[1:]
         if all(np.abs(along @ direction).max() < GRAZING for direction, _ in waves.values()):
-            # Under shear, blocks as wide as the period turn.
+            # Under shear, blocks rotate that are as wide as the periodic domain.
             turned = any(np.abs(along @ motion).max() > GRAZING for _, motion in waves.values())
             wide = turned and bool(scene.boundaries.sides("periodic"))
             width = float(np.ptp(scene.domain.corners @ along.T, axis=0).max()) if wide else 0.0
@@ -191,8 +191,8 @@ def _block_size(scene: RockMass) -> float | None:
 
 
 def plane_waves(scene: RockMass) -> dict[str, tuple[np.ndarray, np.ndarray]] | None:
-    """Return the direction and the motion [d] of each plane wave by its table, of those too that
-    leave a whole flat side; None where a load sends waves in all directions."""
+    """Return the direction and the polarisation [d] of each plane wave by its table, including
+    loads on a whole flat side; None if a load radiates waves in all directions."""
     found = {}
     for key, wave in scene.entries("waves"):
         n = np.array(wave.direction)
@@ -208,7 +208,7 @@ def plane_waves(scene: RockMass) -> dict[str, tuple[np.ndarray, np.ndarray]] | N
 
 
 def _of_rollers(scene: RockMass) -> Iterator[str]:
-    """Say which waves rollers along their way hold back, since they move rock into these."""
+    """Warn of roller sides that hold back a wave travelling along them."""
     normals = shape_of(scene.domain).normals()
     for side in scene.boundaries.sides("roller"):
         for key, (direction, motion) in (plane_waves(scene) or {}).items():
@@ -221,8 +221,7 @@ def _of_rollers(scene: RockMass) -> Iterator[str]:
 
 
 def _of_parts(scene: RockMass) -> Iterator[str]:
-    """Say where a pressure acts on more than half of an opening, which its points in the other
-    order would not."""
+    """Warn where a pressure acts on more than half of an opening, as if its points were swapped."""
     outline = shape_of(scene.domain)
     for i, load in enumerate(scene.loads):
         if load.between is not None and load.opening is not None:
@@ -238,7 +237,7 @@ def _of_parts(scene: RockMass) -> Iterator[str]:
 
 
 def _of_starts(scene: RockMass) -> Iterator[str]:
-    """Warn of waves that are inside the domain before the scene begins, from rest."""
+    """Warn of waves that are inside the domain at the start, when the rock is at rest."""
     corners = np.array(scene.domain.corners)
     for i, wave in enumerate(scene.waves):
         begun = -float(plane_wave(scene, wave).lateness(corners).min())
@@ -251,7 +250,7 @@ def _of_starts(scene: RockMass) -> Iterator[str]:
 
 
 def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> float:
-    """Return when a wave or load is first felt at a place in intact rock, s."""
+    """Return the time when a wave or load first reaches a place in intact rock, s."""
     if isinstance(pulse, Wave):
         return onset(pulse) + float(plane_wave(scene, pulse).lateness(place[None])[0])
     if pulse.at is None:
@@ -262,7 +261,7 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
-    """Warn of points on joints, across which velocity and the stress along them jump, and of forces
+    """Warn of receivers on joints, where velocity and tangential stress jump, and of forces
     there."""
     read = "where velocity, displacement and the stress along it are the mean of both sides"
     named = [(f"record.points[{i}]", x, read) for i, x in enumerate(scene.record.points)]
@@ -282,7 +281,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
 
 
 def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
-    """Warn of points on welds and roller sides, where the stress of triangles does not converge."""
+    """Warn of points on welds and roller sides, where triangles' stress does not converge."""
     every, block = within(scene, scene.joint_sets), scene.numerics.dem.block
     if block is None or all(squared(x) or len(by_direction(x.joint_sets)) > 1 for x in every):
         return

@@ -1,4 +1,4 @@
-"""Warnings of loads and waves: when they act and arrive, and what they meet."""
+"""Warnings about loads and waves: when they act and arrive, and conditions where they act."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
@@ -14,14 +14,12 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
 from jointwave.cases.schema.pulse import Pulse
 
-LEAST_LEVER = 0.75  # of contact points where a face opens, over half its width
+LEAST_LEVER = 0.75  # of contact points on a face that opens, over its half width
 ONSET = 0.01  # of a load's peak: defines its beginning
-#: Of the duration: the end of a table that no one cut off there.
-LATE = 5.0
-#: Crossings of the pillar in a period of the load's highest frequency that no wave test has.
-STATIC = 100.0
-MOST_REFLECTED = 0.05  # of a wave, by sides whose impedance is that of joints less closed
-LEAST_SAMPLES = 10  # in a period: of a sine they miss at most 5 % of its peak
+LATE = 5.0  #: end of a table over the duration beyond which it was hardly cut off on purpose
+STATIC = 100.0  #: more crossings of the rock per shortest period: not a wave test
+MOST_REFLECTED = 0.05  # by sides whose impedance is that of joints before they close further
+LEAST_SAMPLES = 10  # per period: they miss at most 5 % of a sine's peak
 OF_A_RISE = 40  # blocks that the front of a load passes while it rises
 
 
@@ -37,14 +35,14 @@ def of_sources(
     opening: Mapping[str, Any],
     closing: Iterable[tuple[str, float, float, float]],
 ) -> Iterator[str]:
-    """Say where loads or waves act outside the run, or not as they are meant to.
+    """Warn of loads or waves that act outside the run, or not as intended.
 
-    crossings : of the rock by a wave in a second. block : the size of blocks between joints that
-    can fail, m; None without. speed : of a pulse's wave, m/s. pressed : the side that a load acts
-    on as a stress, by its table. instead : what enters such a side whole. arrivals : receivers, and
-    when waves reach them, s. opening : joints that may open under bending, by their tables.
-    closing : sides that absorb waves, the stress that closes joints there, Pa, and the impedance of
-    their rock before and under it, Pa s/m.
+    crossings : of the rock by a wave, per second. block : size of blocks between joints that can
+    fail, m; None without. speed : of a pulse's wave, m/s. pressed : the side on which a load acts
+    as a stress, by table. instead : how to let the whole load enter through such a side. arrivals :
+    receivers, and arrival times of waves there, s. opening : joints that may open under bending, by
+    table. closing : absorbing sides, the stress that closes joints there, Pa, and the rock's
+    impedance before and under it, Pa s/m.
     """
     end = scene.time.duration
     for table, pulse in scene.sources.items():
@@ -52,7 +50,7 @@ def of_sources(
             continue
         held = scene.sides.get(pressed.get(table, ""))
         frequency = frequency_of(pulse, end)
-        if not frequency or scene.gravity is not None:  # what stands by its weight sways slowly
+        if not frequency or scene.gravity is not None:  # bodies under gravity may rock slowly
             frequency = nan
         yield from _of_pulse(table, pulse, end, crossings / frequency)
         if pulse.shape == "step" and block is not None:
@@ -75,7 +73,7 @@ def of_sources(
             f"{highest:.4g} Hz, below which 95 % of the energy lies: it misses peaks between them; "
             f"{1 / (highest * LEAST_SAMPLES):.2g} s takes {LEAST_SAMPLES}"
         )
-    if scene.gravity is None or scene.gravity.static:  # else all falls
+    if scene.gravity is None or scene.gravity.static:  # else everything falls at once
         for receiver, at in arrivals:
             if at >= end:
                 yield f"record.{receiver} is reached at {at:.4g} s: {_after(end)}"
@@ -91,7 +89,7 @@ def of_sources(
 
 
 def _of_pulse(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:
-    """crossings : of the rock by a wave in a period of the highest frequency."""
+    """Warn of a pulse's times; crossings : of the rock by a wave per shortest period."""
     longer = f"is longer than the scene, time.duration = {end:g} s"
     if pulse.shape == "step":
         return
@@ -140,20 +138,20 @@ def _after(end: float) -> str:
 
 
 def look_like_milliseconds(time: np.ndarray, values: np.ndarray, end: float) -> bool:
-    """Return whether a history peaks far after the end of a scene (s), and with its times as
-    milliseconds would lie within it."""
+    """Return whether a history peaks far after the end of a scene (s), but ends within it if its
+    times are milliseconds."""
     last = time[-1]
     return bool(time[np.abs(values).argmax()] > end and LATE * end < last <= 1e3 * end)
 
 
 def of_resolution(gives: str, count: float, what: str, remedy: str = "") -> Iterator[str]:
-    """Say that blocks or nodes of elements are too few in a wavelength."""
+    """Warn of too few blocks or nodes per wavelength."""
     if count < LEAST_BLOCKS:
         yield f"{gives} {count:.3g} {what}; at least {LEAST_BLOCKS:g} resolve it{remedy}"
 
 
 def onset(pulse: Pulse) -> float:
-    """Return when a load or wave first reaches a hundredth of its peak, s."""
+    """Return the time when a load or wave first reaches a hundredth of its peak, s."""
     history = pulse.history
     if wavelet := _wavelet(pulse):
         time = np.linspace(0.0, wavelet.centre, 1000)
@@ -168,7 +166,7 @@ def onset(pulse: Pulse) -> float:
 
 
 def _wavelet(pulse: Pulse) -> Ricker | Gabor | None:
-    """Return a pulse with a gradual onset; None for others."""
+    """Return the history of a pulse with a gradual onset; None for others."""
     found = history_of(pulse, 1.0)
     return found if isinstance(found, Ricker | Gabor) else None
 
