@@ -114,6 +114,11 @@ def _of_waves(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
 def _of_load(load: PlaneLoad, scene: RockMass, outline: Shape) -> Iterator[Wrong]:
     if load.at is not None:
         yield from _of_place("at", load.at, outline)
+        for side, held in scene.boundaries:
+            for face in outline.faces_of(side) if held in ("fixed", "roller") else ():
+                bears = held == "fixed" or abs(face[1] @ np.array(load.direction)) > GRAZING
+                if bears and distance(np.array(load.at), [face]) <= BESIDE * outline.size:
+                    yield "at", load.at, f"must not push on a {held} side, which bears it"
     holes = len(scene.domain.holes)
     if load.opening is not None and load.opening >= holes:
         yield "opening", load.opening, f"must be one of the {holes} openings, counted from 0"

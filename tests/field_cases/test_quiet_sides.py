@@ -19,6 +19,7 @@ from tests.field_cases.scenes import ENGINES, JOINT, P_SPEED, S_SPEED, SIDES, ma
 
 NEVER = {"friction_angle": 30.0, "cohesion": 1e9, "tension": False}
 HELD = {"xx": 5e7, "yy": 5e7}  # Pa: no joint opens either
+STIFF = {"normal_stiffness": 1e15, "shear_stiffness": 1e15}  # Pa/m
 
 
 def rock(joints=(), kind="S", direction=(0.0, 1.0), **tables):
@@ -157,6 +158,25 @@ def test_homogenised_rock_has_the_waves_of_its_medium_at_a_free_top():
         for name in ("continuum-equivalent", "effective-medium")
     )
     assert apart(found, exact) < 0.02
+
+
+def test_p_waves_that_decay_from_a_free_top_of_crossing_sets_are_said():
+    """An S wave at joints as stiff as rock makes the P wave of a free face in intact rock, which
+    decays beyond 35.3 degrees, but none at 45: its velocity at the face, within a third, since the
+    field's own S wave is off with it."""
+    k, sets = S_SPEED / P_SPEED, [{"dip": dip, "spacing": 2.0} | STIFF for dip in (25.0, -65.0)]
+    sides = dict.fromkeys(SIDES[:3], "quiet") | {"top": "free"}
+    named = [one | {"name": f"dip {one['dip']}"} for one in sets]
+    for angle in (30.0, 40.0, 45.0, 60.0):
+        s, c = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+        found = side_error(scene(named, direction=(s, c), boundaries=sides))
+        xi, double = np.sqrt(k**2 - s**2 + 0j), 1 - 2 * s**2
+        wave_of_p = abs(4 * s * c * double / (double**2 + 4 * s**2 * xi * c)) * np.hypot(s, abs(xi))
+        if angle in (30.0, 45.0):
+            assert found is None
+        else:
+            assert "decays from the free side" in found.words
+            assert found.part == pytest.approx(wave_of_p, rel=1 / 3)
 
 
 SLIPS = {"dip": 30.0, "friction_angle": 0.0, "cohesion": 1e5}

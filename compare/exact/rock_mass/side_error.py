@@ -30,6 +30,7 @@ from jointwave.compare.exact.rock_mass.conditions import (
     normals_of,
     waves_leave,
 )
+from jointwave.compare.exact.rock_mass.effective_medium import medium_field
 from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
 from jointwave.compare.exact.rock_mass.stack_waves import on_face
 
@@ -135,6 +136,8 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
     kept = [one.name for one in planes.joint_sets]
     left = [one for one in scene.joint_sets if one.name not in kept]
     smeared = all(one.spacing for one in left) and not planes.regions and not kept
+    if smeared and left:
+        yield _left_on_face(scene), "a wave decays from the free side"
     for one in left:
         back = _sent_back(scene, one)
         if smeared:
@@ -158,6 +161,19 @@ def _sent_back(scene: RockMass, one: JointSet) -> float:
         if wave.time_scale and K:
             x = np.pi / wave.time_scale * float(incident.rock.density) * incident.speed / K
             most = max(most, float(x / np.hypot(1.0, x)))
+    return most
+
+
+def _left_on_face(scene: RockMass) -> float:
+    """Return the motion that the traction is which the waves of a medium leave on a free side, over
+    the velocity of the wave."""
+    face, most = free_face(scene), 0.0
+    if face is None:
+        return most
+    for one in scene.waves:
+        waves = medium_field(scene.model_copy(update={"waves": [one]})).waves
+        left = on_face(np.sum([x.unit_stress() for x in waves], axis=0)[None, :, None], face.normal)
+        most = max(most, float(np.linalg.norm(left)) * _moved(waves[0], face.normal))
     return most
 
 

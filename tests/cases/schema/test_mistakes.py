@@ -150,6 +150,14 @@ IN_PLANE = {
     f"{FORCE}; {DOWN}; loads[0].at = [30.0, 10.0]": (
         "loads[0].quantity = 'stress' ... must be 'force' here"
     ),
+    f"{FORCE}; {DOWN}; loads[0].quantity = 'force'; loads[0].at = [30.0, 40.0]; "
+    "boundaries.top = 'fixed'": (
+        "loads[0].at = [30.0, 40.0]: must not push on a fixed side, which bears it"
+    ),
+    f"{FORCE}; {DOWN}; loads[0].quantity = 'force'; loads[0].at = [30.0, 40.0]; "
+    "boundaries.top = 'roller'": (
+        "loads[0].at = [30.0, 40.0]: must not push on a roller side, which bears it"
+    ),
     f"{SIDE} = 'top'; {DOWN}; loads[0].kind = 'base'; loads[0].quantity = 'velocity'": (
         "loads[0].side = 'top' ... needs boundaries.top = 'fixed' or 'quiet', not 'free'"
     ),
