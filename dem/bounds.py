@@ -1,4 +1,4 @@
-"""Bounds of the motion of rigid blocks: highest energy, motion of contacts, rotation."""
+"""Bounds on the motion of rigid blocks: highest energy, motion of contacts, rotation."""
 
 import numpy as np
 
@@ -16,10 +16,8 @@ MOST_TURN = 0.045  # rad: small rotations then neglect 1 - cos = 1e-3 of a lever
 
 
 def highest_energy(system: BlockSystem, state: State) -> float:
-    """Return a bound on sqrt(m) v of any degree of freedom, sqrt(J).
-
-    From sources, gravity and moving walls, and the energy stored at the start.
-    """
+    """Return a bound on sqrt(m) v of any degree of freedom, sqrt(J), from sources, gravity, moving
+    walls and the energy stored at the start."""
     blocks, time, mass = system.blocks, system.time, system.blocks.inertia[:, 0]
     own = system.model.blocks
     duration = time.dt * (time.steps + time.stride)
@@ -38,8 +36,8 @@ def highest_energy(system: BlockSystem, state: State) -> float:
 
 
 def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
-    """Return gap and slips (m) at the centres of all contacts, and their rotation, in their frames
-    [c, F]."""
+    """Return gap and slips (m) at the centres of all contacts, and relative rotations (rad), in
+    their frames [c, F]."""
     met, u = system.blocks.contacts, state.u
     rotations = u.shape[1] - system.blocks.dim
     of_i, of_j = (jumps_of(met.frame, arm, rotations) for arm in met.arm.swapaxes(0, 1))
@@ -48,7 +46,7 @@ def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
 
 
 def stored(system: BlockSystem, state: State) -> float:
-    """Return the root of twice the energy in all contacts, sqrt(J)."""
+    """Return the root of twice the elastic energy of all contacts, sqrt(J)."""
     met, own, dim = system.blocks.contacts, system.blocks.columns, system.blocks.dim
     moved, rotations = motion_of_contacts(system, state), state.u.shape[1] - dim
     if system.model.form.stressed:
@@ -59,11 +57,11 @@ def stored(system: BlockSystem, state: State) -> float:
 
 
 def moved_apart(system: BlockSystem, state: State) -> Moved | None:
-    """Return the contact that has moved furthest over the size of its smaller block, or in the
-    plane blocks that overlap without one; None in a single block and where motion is along an axis.
+    """Return the contact with the largest motion over the size of its smaller block, or in the
+    plane blocks that overlap without a contact; None without contacts and in one dimension.
 
-    Of a row it is the joint that has slipped furthest at its centre, over the side of its face:
-    opening leaves faces as large.
+    In a row it is the contact with the largest slip over the side of its face: opening does not
+    change the area of contact.
     """
     blocks, met, dim = system.blocks, system.blocks.contacts, system.blocks.dim
     count = blocks.count
@@ -85,8 +83,8 @@ def moved_apart(system: BlockSystem, state: State) -> Moved | None:
 
 
 def refuse_large_rotation(system: BlockSystem, state: State, t: float) -> None:
-    """Raise SceneError if blocks of a row have rotated too far for small rotations at t (s);
-    elsewhere `moved_apart` sees what rotations do to faces."""
+    """Raise SceneError if blocks of a row have rotated too far for small rotations at t (s); for
+    other blocks `moved_apart` covers rotations."""
     scene, form = system.blocks.scene, system.model.form
     if not system.blocks.in_row or not form.turns or form.finite:
         return

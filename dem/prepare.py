@@ -1,4 +1,4 @@
-"""From a scene to blocks ready to run."""
+"""Preparation of a run: from a scene to a `BlockSystem`."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -27,16 +27,14 @@ from jointwave.joints.law import table_of
 if TYPE_CHECKING:
     from jointwave.cases.incident import IncidentField
 
-#: Bytes a block, with its contacts and all that makes them, by dimension, and for each of their
-#: points.
+#: Bytes a block with its contacts, preparation included, by dimension, and bytes a contact point.
 OF_BLOCK, OF_POINT = {1: 500, 2: 2000, 3: 2000}, 60
 
 
 def prepared(scene: AnyScene, incident: "IncidentField | None" = None) -> BlockSystem:
     """Return a scene ready to run; raises SceneError if it cannot run.
 
-    incident : the field of waves that quiet sides take in; absent: that of the scene's waves in
-    rock without joints.
+    incident : field that enters through quiet sides; absent: the scene's waves in unjointed rock.
     """
     blocks = blocks_of(scene)
     time, around = clock_of(blocks), blocks.around
@@ -61,19 +59,18 @@ def prepared(scene: AnyScene, incident: "IncidentField | None" = None) -> BlockS
 
 
 def blocks_of(scene: AnyScene) -> Any:
-    """Return a scene as `blocks.rigid.RigidBlocks`; raises SceneError if they cannot be made."""
+    """Return the `RigidBlocks` of a scene; raises SceneError if it has none."""
     if scene.is_column:
         return row_of(scene)
     from jointwave.dem.blocks.rock_mass import (
-        blocks_of as cut,  # with shapely, which no pillar needs
+        blocks_of as cut,  # imports shapely, which pillars do not need
     )
 
     return cut(scene)
 
 
 def clock_of(blocks: RigidBlocks) -> Clock:
-    """Return the clock of a run; raises SceneError for an unstable step and for a run that does not
-    fit in memory."""
+    """Return the clock of a run; raises SceneError for an unstable step or too little memory."""
     scene, numerics, dim = blocks.scene, blocks.scene.numerics.dem, blocks.dim
     time = clock(scene, blocks.critical, numerics.step_fraction, numerics.allow_unstable, "dem")
     of_block = OF_BLOCK[dim] + OF_POINT * blocks.points.shape[1] * (dim > 1 and blocks.has_points)
@@ -90,8 +87,8 @@ def clock_of(blocks: RigidBlocks) -> Clock:
 def loads_of(
     blocks: RigidBlocks, time: Clock, moving: Shaking | None, incident: "IncidentField | None"
 ) -> tuple[Loads, np.ndarray, np.ndarray]:
-    """Return the external forces on blocks, the resistance of the dashpots there, as
-    `boundaries.dashpots` has it, then that of unit dashpots where they bear the weight."""
+    """Return the external forces on blocks, and the resistance [h, d + d^2, d + d^2] of their
+    dashpots and of unit dashpots where quiet sides bear the weight (`boundaries.dashpots`)."""
     around, rows = blocks.around, blocks.around.rows
     row = np.searchsorted(rows, around.points.block)
     resistance, bearing = (
@@ -108,8 +105,7 @@ def loads_of(
 
 
 def held(blocks: RigidBlocks, loads: Loads, resistance: np.ndarray, dt: float, keep: float) -> Held:
-    """Return the blocks that something acts on from outside, for steps of dt, s; keep : as in
-    `model.held_by`."""
+    """Return the held blocks for steps of dt, s; keep : as in `model.held_by`."""
     dashpot, springs = loads.onto @ resistance @ loads.onto.T, None
     if blocks.around.springs:
         springs = np.zeros((len(dashpot), 3, *dashpot.shape[1:]))

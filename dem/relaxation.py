@@ -1,12 +1,13 @@
 """Initial state of rigid blocks: unloaded, or at rest under prestress and gravity, found by dynamic
 relaxation.
 
-Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The mode that still
-moves shows itself in the change of displacement du and of unbalanced force dF over a few steps,
+Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The frequency of
+the present motion follows from the change of displacement du and of unbalanced force dF over a few
+steps,
 
     omega^2 = -du . dF / (du . M du),
 
-Rayleigh's quotient, so the damping follows from fast modes to the slowest, which takes
+Rayleigh's quotient. So the damping follows the motion from fast modes to the slowest, which takes
 some ln(1 / tolerance) / (omega dt) steps. Underwood, Dynamic relaxation, in: Computational Methods
 for Transient Analysis (1983).
 """
@@ -32,25 +33,25 @@ from jointwave.dem.system import BlockSystem
 from jointwave.joints.law import IN_MOTION, Law, sticking
 from jointwave.results.arrays import copied, fill
 
-STEPS_AT_ONCE = 10  # between two looks at the forces
+STEPS_AT_ONCE = 10  # between checks of the forces
 STEP_FRACTION = 0.9  # of the critical step: only the final state matters
-NEVER = 1 << 60  # steps between samples where none are taken
+NEVER = 1 << 60  # sampling interval, in steps, for no samples
 UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one below"
-#: A stall is this part of the most steps without progress, and at least as many as led there: what
-#: bears on ever fewer points comes to rest ever more slowly.
+#: A stall is no progress for 1 / PATIENCE of the most steps, and for as many steps as led there:
+#: blocks that rest on ever fewer contact points come to rest ever more slowly.
 PATIENCE = 80
-STEADY = 0.9  # of a way to that in the same time before: 1 at a constant speed, 3 from rest
-PARTS = 40  # in which walls of openings are released where joints may slip or open
-STUCK = 1e-4  # out-of-balance ratio of joints that neither slip nor open, before they may
-FELT = 1e-4  # of the force of loads and waves on a block: what may be left beside them, by default
-LEAST = 1e-12  # out-of-balance ratio that is asked for, by default
-RESISTED = 1e-9  # of the largest resistance: below it there is none
-LOOKS = 0.3  # stretches of ten steps after each part, over the root of the number of blocks
+STEADY = 0.9  # least ratio of two successive distances: 1 at constant speed, 3 from rest
+PARTS = 40  # stages of releasing the walls of openings where joints may slip or open
+STUCK = 1e-4  # out-of-balance ratio with sticking joints, before they may slip and open
+FELT = 1e-4  # default residual force, over the force of loads and waves on a block
+LEAST = 1e-12  # smallest default of the out-of-balance ratio
+RESISTED = 1e-9  # of the largest resistance: smaller ones count as none
+LOOKS = 0.3  # chunks of ten steps after each stage, over the root of the number of blocks
 
 
 class Rest(NamedTuple):
-    """How a static state was reached: steps taken, largest unbalanced force over the scale; moving,
-    the block that moves ever farther, None where none does."""
+    """Outcome of dynamic relaxation: steps taken, out-of-balance ratio (largest unbalanced force
+    over the scale), and the block that keeps moving, or None."""
 
     steps: int
     ratio: float
@@ -63,10 +64,10 @@ class Rest(NamedTuple):
 
 
 def start(system: BlockSystem, state: State) -> Rest | None:
-    """Set the initial state of the scene, and what quiet sides bear of the weight; return how a
-    static state was reached, if it is one.
+    """Set the initial state, and the weight that quiet sides bear; return the outcome of the
+    relaxation to a static state, if there was one.
 
-    Raises SceneError where there is none.
+    Raises SceneError where no static state exists.
     """
     scene, blocks = system.blocks.scene, system.model.blocks
     static = scene.gravity is not None and scene.gravity.static
@@ -83,7 +84,7 @@ def start(system: BlockSystem, state: State) -> Rest | None:
         if state.history is not None:
             rows, kept = form.history, form.history.jump
             state.history[:, kept:] = relaxation.state.history[:, kept:]
-            if form.parts.softening:  # what has broken here, broke before the run
+            if form.parts.softening:  # joints that broke here, broke before the run
                 size = state.history.shape[1]
                 for first in range(rows.size + form.point.whole, size, form.point.size):
                     state.history[:, first : first + LANES] = 0.0
@@ -104,16 +105,16 @@ def start(system: BlockSystem, state: State) -> Rest | None:
 
 
 def unstressed(model: Model) -> Chunks:
-    """Return the contacts of a model without the tractions of a prestress."""
+    """Return the contacts of a model without tractions under prestress."""
     table, rows = model.chunks.table.copy(), model.form.table
     table[:, rows.start : rows.second] = 0.0
     return model.chunks._replace(table=table)
 
 
 def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
-    """Return what turns velocities of blocks into those [h, F, F] that meet no resistance.
+    """Return matrices [h, F, F] that project block velocities onto those without resistance.
 
-    resistance : force and moment per velocity [h, F, F], of any size. masses : [h, F, F].
+    resistance : force and moment per velocity [h, F, F], of any magnitude. masses : [h, F, F].
     """
     root = np.linalg.cholesky(masses)
     back = np.linalg.inv(root)
@@ -123,9 +124,11 @@ def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
 
 
 def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
-    """Return by what to multiply the matrices of blocks so that all have the same critical step
-    [N, 1, 1]; groups of blocks in contact that no wall holds keep their masses: they come to rest
-    about their common centre of mass."""
+    """Return factors of the mass matrices [N, 1, 1] that give all blocks the same critical step.
+
+    Groups of blocks in contact without a wall keep their masses: they come to rest about their
+    common centre of mass.
+    """
     found, count, (i, j) = np.ones(len(masses)), len(masses), contacts.blocks.T
     inner = j < count
     graph = coo_array((np.ones(inner.sum()), (i[inner], j[inner])), shape=(count, count))
@@ -140,15 +143,15 @@ def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarr
 
 
 class BlockRelaxation:
-    """The blocks under their static forces.
+    """Dynamic relaxation of the blocks under their static forces.
 
-    Where a wall holds its group, a block has the mass that gives it the critical step of the
-    stiffest: only weights and stiffness count, and no small block holds up the others (Underwood).
-    Damping and rates do not affect a static state: dashpots, also of quiet sides, and local damping
-    are zero, and friction is independent of rate. Quiet sides that bear the weight are held: their
-    blocks do not move as these do not let them. The kernel is that of the motion, so that a first
-    run compiles one, but where that is composed of stages. sticks : whether the weight alone acts,
-    and no joint opens, slips or breaks.
+    Masses are scaled so that all blocks of a group with a wall have the same critical step
+    (Underwood): a static state depends on weight and stiffness only. All dashpots and local damping
+    are zero, and friction does not depend on rate. Quiet sides that bear the weight are fixed in
+    the directions in which they bear it. The kernel is that of the motion, which saves compiling a
+    second one, except for composed steps.
+
+    sticks : apply the weight alone, with joints that cannot open, slip or break.
     """
 
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
@@ -172,7 +175,7 @@ class BlockRelaxation:
             self.walls = Loads(rows, [walls], [], system.time, loads.onto).steady
             self.steady = np.zeros_like(self.walls)
             self.steady[np.searchsorted(rows, loads.rows)] = loads.steady
-        # Of the velocities of blocks: what quiet sides that bear the weight resist them by.
+        # Resultants of unit dashpots on quiet sides that bear the weight, per block velocity.
         self.bearing, self.onto, self.rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
         nothing = np.zeros((len(rows), *masses.shape[1:]))
         held = held_by(nothing, rows, masses, dt) if model.form.held else None
@@ -201,17 +204,17 @@ class BlockRelaxation:
             self.goal = min(self.goal, max(wave / self.scale, LEAST))
         self.masses, self.centroid, self.most_steps = masses, blocks.centroid, blocks.static_steps
         self.rotation = np.ones(masses.shape[1])
-        if model.form.finite:  # whose state has momenta, and half the vectors of small rotations
+        if model.form.finite:  # v has angular momenta; a quaternion's vector is half the rotation
             self.masses = self.model.inertia[:, :, None] * np.eye(6)
             self.rotation[3:] = 2.0
         if weighed and blocks.placed is not None:
             self.place(blocks.placed, blocks.scene.numerics.dem.static_tolerance)
 
     def excavate(self, walls: np.ndarray) -> int:
-        """Release the walls of openings but for the last part, and return the steps taken: all at
-        once blocks overshoot, and slip further than they must.
+        """Release the walls of openings in stages, except the last, and return the steps taken.
+        Released at once, blocks would overshoot and slip too far.
 
-        walls : what they hold blocks by, in the rows of the forces.
+        walls : forces of the walls on blocks, in the rows of `steady`.
         """
         whole, looks = self.steady, ceil(LOOKS * np.sqrt(self.count))
         for part in range(1, PARTS):
@@ -224,8 +227,8 @@ class BlockRelaxation:
         return (PARTS - 1) * looks * STEPS_AT_ONCE
 
     def stick(self) -> int:
-        """Go to the static state of joints that neither slip nor open, where some can, and return
-        the steps taken: from rest, undamped, blocks overshoot and slip further than they must."""
+        """Relax with joints that neither slip nor open, if some can, and return the steps taken.
+        From rest, undamped, blocks would overshoot and slip too far."""
         if self.state.history is None or not self.model.form.points:
             return 0
         before, own = copied(self.state), self.model.laws.copy()
@@ -240,7 +243,7 @@ class BlockRelaxation:
         return rest.steps
 
     def place(self, moved: np.ndarray, tolerance: float) -> None:
-        """Begin with this displacement of the blocks [N, F] if it is a static state."""
+        """Start from this displacement of the blocks [N, F] if it is a static state."""
         before = copied(self.state)
         self.state.u[: self.count] = moved
         force = np.abs(self.unbalanced())
@@ -250,9 +253,9 @@ class BlockRelaxation:
     def settle(self, unborne: str = "") -> Rest:
         """Bring the blocks to rest under gravity and prestress.
 
-        unborne : what to do where sudden gravity does not come to rest on sides that bear it.
-        Raises SceneError where there is no static state within numerics.dem.static_tolerance: a
-        block that moves on is another thing than a residual that is still too large.
+        unborne : remedy to report where quiet sides cannot bear sudden gravity. Raises SceneError
+        without a static state within numerics.dem.static_tolerance; its message distinguishes a
+        block that keeps moving from a residual that is too large.
         """
         scene, tolerance = self.scene, self.scene.numerics.dem.static_tolerance
         rest = self.relax(self.goal)
@@ -276,9 +279,8 @@ class BlockRelaxation:
     def relax(self, tolerance: float) -> Rest:
         """Relax until the out-of-balance ratio is within the tolerance.
 
-        It ends earlier after `most_steps`, or once the ratio no longer falls and a block moves: it
-        goes farther in as many steps as led there than until then, or on the same way at no less
-        speed.
+        End after `most_steps`, or once the ratio stalls while blocks keep moving: during the stall,
+        they move farther than before it, or at a speed that does not fall.
         """
         u, force = self.look()
         start, ratio, steps, begin, moving = u, self.ratio(force), 0, 0, None
@@ -301,7 +303,7 @@ class BlockRelaxation:
         return Rest(steps, ratio, None if ratio <= tolerance else moving)
 
     def ratio(self, force: np.ndarray) -> float:
-        """Return the out-of-balance ratio of unbalanced forces."""
+        """Return the largest unbalanced force over the scale."""
         largest = float(np.abs(force).max())
         return largest / self.scale if largest else 0.0
 
@@ -310,8 +312,10 @@ class BlockRelaxation:
         return (self.rotation * self.state.u[: self.count]).ravel(), self.unbalanced()
 
     def damp(self, u: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Take steps under damping that is critical for the mode that moved before; return what
-        `look` does, which was u and force before."""
+        """Take steps with damping that is critical for the last motion; return the new `look`.
+
+        u, force : the `look` before.
+        """
         self.advance(STEPS_AT_ONCE, self.alpha)
         now, left = self.look()
         change = now - u
@@ -321,14 +325,14 @@ class BlockRelaxation:
         return now, left
 
     def advance(self, steps: int, alpha: float) -> None:
-        """Take steps under mass-proportional damping alpha, 1/s."""
+        """Take steps with mass-proportional damping alpha, 1/s."""
         drag = 0.5 * self.model.blocks.dt * alpha
         self._drive[:] = self.steady
-        # From step 1: only step 0 would be a sample.
+        # From step 1: step 0 would be sampled.
         self._take(NEVER, 1, 1 + steps, (1 - drag) / (1 + drag))
 
     def unbalanced(self) -> np.ndarray:
-        """Return the net force and moment on every freedom, from the step that they would cause."""
+        """Return the net force and moment on every freedom, from the velocity after one step."""
         kept = copied(self.state)
         self.state.v[:] = 0.0
         self.advance(1, 0.0)
@@ -337,8 +341,8 @@ class BlockRelaxation:
         return gain.ravel() / self.model.blocks.dt
 
     def borne(self) -> np.ndarray:
-        """Return the resultants of the forces that sides which bear the weight are held by
-        [h, d + d^2]: of tractions linear along each block's sides."""
+        """Return the resultants [h, d + d^2] of the forces by which quiet sides bear the weight,
+        from tractions that vary linearly along each block's sides."""
         moves = self.model.held.matrices[:, 1]
         held = moves.copy()
         moves[:] = np.eye(moves.shape[1])
@@ -349,7 +353,7 @@ class BlockRelaxation:
         return (self.bearing @ stretched)[:, :, 0]
 
     def fastest(self, change: np.ndarray) -> str:
-        """Return the block that moves farthest."""
+        """Name the block that moves farthest."""
         dim = self.centroid.shape[1]
         moved = np.linalg.norm(change.reshape(self.count, -1)[:, :dim], axis=1)
         k = int(moved.argmax())

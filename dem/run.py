@@ -1,4 +1,4 @@
-"""Simulation by rigid blocks: the run of a rock mass or of a pillar, from its scene to a result."""
+"""Simulation by rigid blocks, from a scene to its result."""
 
 import json
 from collections.abc import Callable
@@ -30,10 +30,10 @@ from jointwave.results.arrays import size_of
 if TYPE_CHECKING:
     from jointwave.cases.incident import IncidentField
 
-BLOCK_STEPS_AT_ONCE = 20_000_000  # some 10 ms to 1 s: often enough for a progress bar
-LOOKS = 20  # at a run, at least: blocks may move further than they can
-LEAST_STEPS = 64  # at least: each thread copies its blocks before and after
-MOST_OF_DRIVE = 2_000_000  # numbers: forces on held blocks in memory at a time
+BLOCK_STEPS_AT_ONCE = 20_000_000  # in some 10 ms to 1 s: often enough for a progress bar
+LOOKS = 20  # checks of a run, at least: blocks may move too far
+LEAST_STEPS = 64  # at a time: each thread copies its blocks before and after
+MOST_OF_DRIVE = 2_000_000  # force components on held blocks in memory at a time
 
 
 def simulate(
@@ -42,15 +42,14 @@ def simulate(
     keeper: Checkpointer | None = None,
     incident: "IncidentField | None" = None,
 ) -> xr.Dataset:
-    """Simulate a scene with rigid blocks, with the degrees of freedom that it needs.
+    """Simulate a scene with rigid blocks.
 
-    progress : called with the finished fraction. keeper : of checkpoints,
-    `numerics.time_loop`. incident : of a rock mass, the field that enters through quiet sides;
-    absent: that of its waves in rock without joints.
+    progress : called with the finished fraction. keeper : saves checkpoints. incident : field that
+    enters a rock mass through quiet sides; absent: the scene's waves in unjointed rock.
 
-    Raises SceneError for an unstable step, a static state that does not exist, rotations too large
-    for their kinematics and a quality factor; StoppedError, an UnstableError with the
-    result so far, when the motion leaves its bounds.
+    Raises SceneError for an unstable step, a missing static state, rotations too large for small
+    kinematics and a quality factor; StoppedError, an UnstableError with the result so far, when the
+    motion leaves its bounds.
     """
     if (quality := scene.rock.quality_factor) is not None:
         raise SceneError(scene.where, "rock.quality_factor", quality, NOT_OF_BLOCKS)
@@ -103,7 +102,7 @@ def simulate(
 
 
 class Plan(NamedTuple):
-    """A run before it: its clock, the critical step (s), degrees of freedom, and threads."""
+    """Size of a run: its clock, critical step (s), degrees of freedom and threads."""
 
     time: Clock
     critical: float
@@ -112,7 +111,7 @@ class Plan(NamedTuple):
 
 
 def plan(scene: AnyScene) -> Plan:
-    """Return what a run would take; raises SceneError as it would."""
+    """Return the size of a run; raises the SceneErrors of its preparation."""
     blocks = blocks_of(scene)
     time = clock_of(blocks)
     threads = thread_count(scene.numerics.dem.threads, blocks.count, blocks.dim)
@@ -121,7 +120,7 @@ def plan(scene: AnyScene) -> Plan:
 
 def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[int, int], None]:
     """Return a function that takes the steps first .. last - 1, in batches whose forces fit in
-    memory; with no step to take it compiles."""
+    memory; without steps (first == last) it compiles the kernel."""
     model, loads, time, stages = system.model, system.loads, system.time, system.model.form.stages
     width = stages * loads.onto.shape[1] * len(loads.rows)
     size = min(max(1, MOST_OF_DRIVE // max(1, width)), time.stride * time.samples)
@@ -147,9 +146,10 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
 def look(
     system: BlockSystem, state: State, samples: Samples, monitor: Guard, first: int, last: int
 ) -> None:
-    """Check the motion after samples first .. last - 1, all of which may be invalid, and its energy
-    where the ledger is exact. Raises StoppedError out of bounds, at the block that has the most
-    energy."""
+    """Check the motion in samples first .. last - 1, and its energy where the ledger is exact.
+
+    Raises StoppedError, with the block of the most energy, if the motion leaves its bounds.
+    """
     blocks, form = system.blocks, system.model.form
     masses, momenta = blocks.inertia, system.model.inertia
     if form.finite:

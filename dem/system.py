@@ -15,10 +15,9 @@ from jointwave.results.arrays import copied
 class BlockSystem(NamedTuple):
     """Blocks ready to run.
 
-    loads : what acts on held blocks. resistance : of the dashpots on
-    sides and ends, as `boundaries.dashpots` has it [h, d + d^2, d + d^2]. bearing : the same of
-    unit dashpots where these bear the weight. shaking : the motion of walls; None where none moves.
-    threads : that share each step.
+    loads : forces on held blocks. resistance : of the dashpots on sides and ends
+    [h, d + d^2, d + d^2], see `boundaries.dashpots`. bearing : the same for unit dashpots where
+    sides bear the weight. shaking : motion of walls; None where none moves. threads : their number.
     """
 
     blocks: Any
@@ -33,8 +32,8 @@ class BlockSystem(NamedTuple):
     def sampled(
         self, state: State, sample: int, places: np.ndarray, watched: np.ndarray
     ) -> Samples:
-        """Return one sample of blocks [r] and contacts [w], by the step that it needs, on a copy of
-        the state."""
+        """Return one sample of blocks [r] and contacts [w], by taking a step with a copy of the
+        state."""
         model, step = self.model._replace(places=places, watched=watched), sample * self.time.stride
         found, steps = samples_for(model, 1), np.array([step])
         drive = None if model.held is None else self.loads.drive(steps)

@@ -1,4 +1,4 @@
-"""The rigid blocks of a pillar: of length alone where all motion is along it, else in space."""
+"""The rigid blocks of a pillar: in one dimension where all motion is axial, else in space."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,7 +22,7 @@ from jointwave.dem.readings.snapshots import Bodies
 from jointwave.dem.sides.ends import surroundings_of, under_weight
 from jointwave.results.subcells import CORNERS
 
-CUT = {1: 400, 3: 12_000}  # bytes of a block while a pillar is cut
+CUT = {1: 400, 3: 12_000}  # bytes a block while a pillar is cut
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,12 +35,12 @@ class BlocksOfPillar(RigidBlocks):
 
     @cached_property
     def receivers(self) -> Sections:
-        """What is recorded."""
+        """Its receivers."""
         return sections_of(self.scene, len(self.contacts.walls))
 
     @property
     def bodies(self) -> Bodies:
-        """Its blocks in space, as snapshots show them: hexahedra."""
+        """Its blocks as hexahedra, for snapshots."""
         sides = np.stack(np.broadcast_arrays(self.scene.pillar.side, self.size), axis=1)
         arms = (np.array(CORNERS["hexahedron"]) - 0.5) * sides[:, None, [0, 1, 0]]
         block, centres = np.arange(self.count), np.zeros((self.count, 1, 3))
@@ -57,7 +57,7 @@ class BlocksOfPillar(RigidBlocks):
 
 
 def blocks_of(scene: Scene) -> BlocksOfPillar:
-    """Return the rigid blocks of a pillar; raises SceneError for more than memory holds."""
+    """Return the rigid blocks of a pillar; raises SceneError if they do not fit in memory."""
     dim = 3 if is_spatial(scene) else 1
     refuse_beyond_memory(scene, {"pillar.block": CUT[dim] * scene.block_count})
     p, cut = calibrate(scene), cut_of(scene, dim)
@@ -90,7 +90,7 @@ def blocks_of(scene: Scene) -> BlocksOfPillar:
 
 
 def cut_of(scene: Scene, dim: int) -> Cut:
-    """Return the blocks of a pillar, whole in any number of dimensions."""
+    """Return the blocks of a pillar, with full volumes and areas in any number of dimensions."""
     cut, section = blocks_of_pillar(scene, dim), scene.pillar.side ** (3 - dim)
     contacts, boundary = (
         replace(one, area=section * one.area, second_moment=section * one.second_moment)
@@ -106,7 +106,7 @@ def cut_of(scene: Scene, dim: int) -> Cut:
 
 
 def columns_of_pillar(scene: Scene, p: Properties, contacts: Contacts, turns: bool) -> Columns:
-    """Return the law of the contacts, each in a column of its own."""
+    """Return the joint laws of the contacts, one column each."""
     walls = [p.at_start if one == "start" else p.at_end for one in contacts.walls]
     normal = np.append(p.stiffness, [one.wall_stiffness for one in walls])
     shear = np.append(p.shear_stiffness, [one.wall_shear_stiffness for one in walls])

@@ -26,15 +26,15 @@ ROTATIONS = {1: 0, 2: 1, 3: 3}
 
 @dataclass(frozen=True, kw_only=True)
 class RigidBlocks(ABC):
-    """Rigid blocks, their contacts and what acts on them, before time discretisation.
+    """Rigid blocks, their contacts, loads and boundaries, before time discretisation.
 
-    cut : the blocks, per metre of thickness in the plane; of a pillar always whole. sides : names
-    of the boundary's sides, in order. masses : matrices of mass, kg, and of inertia, kg m2, of each
-    block [N, F, F]. gravity : [d], m/s2. prestress : tensor [d, d], Pa; None without. pressed : the
-    largest force that this stands for, N. static_steps : the most of dynamic relaxation. finite :
-    whether blocks turn by any angle. composed : whether steps are those of `composition`.
-    in_row : whether contacts join them one after the other. placed : their displacement [N, F]
-    under the weight if all joints were elastic; None where that is not known beforehand.
+    cut : geometry of the blocks, per metre of thickness in the plane. sides : names of the
+    boundary's sides, in order. masses : matrices of mass, kg, and inertia, kg m2, of each block
+    [N, F, F]. gravity : [d], m/s2. prestress : tensor [d, d], Pa; None without. pressed : force
+    scale of the prestress, N. static_steps : most steps of dynamic relaxation. finite : whether
+    blocks rotate by any angle. composed : whether steps are those of `composition`. in_row :
+    whether contacts join consecutive blocks. placed : displacement [N, F] under the weight with
+    elastic joints; None where it is not known in advance.
     """
 
     scene: Any
@@ -53,19 +53,19 @@ class RigidBlocks(ABC):
     in_row: bool = False
     placed: np.ndarray | None = None
 
-    #: Corners of a block in snapshots, by dimension, and the key that decides how many there are.
+    #: Corners of a block in snapshots, by dimension, and the scene key that sets the block count.
     corners: ClassVar[dict[int, int]]
     counted_by: ClassVar[str]
 
     @property
     @abstractmethod
     def receivers(self) -> Any:
-        """What is recorded; raises SceneError for a point outside the rock."""
+        """Its receivers; raises SceneError for a point outside the rock."""
 
     @property
     @abstractmethod
     def bodies(self) -> Any:
-        """Its blocks as snapshots show them."""
+        """Bodies of its blocks for snapshots."""
 
     @property
     def count(self) -> int:
@@ -79,19 +79,19 @@ class RigidBlocks(ABC):
 
     @property
     def centroid(self) -> np.ndarray:
-        """Of each block [N, d], m."""
+        """Centroid of each block [N, d], m."""
         return self.cut.centroid
 
     @property
     def size(self) -> np.ndarray:
-        """Of each block [N], m; in a row its thickness."""
+        """Size of each block [N], m; in a row its thickness."""
         if self.in_row:
             return self.cut.volume / self.contacts.area[:1]
         return self.cut.volume ** (1 / self.dim)
 
     @cached_property
     def onto(self) -> np.ndarray:
-        """`boundaries.freedoms`."""
+        """Matrix [F, d + d^2] of `boundaries.freedoms`."""
         return freedoms(self.dim, self.masses.shape[1] - self.dim)
 
     @cached_property
@@ -101,7 +101,7 @@ class RigidBlocks(ABC):
 
     @cached_property
     def critical(self) -> float:
-        """The critical step of a row, or a lower bound of it, s."""
+        """Critical time step of a row, for other blocks a lower bound, s."""
         own = self.contacts, self.columns, self.masses, self.scene.damping.local or 0.0
         if not self.in_row:
             return critical_time_step(*own)
@@ -110,18 +110,17 @@ class RigidBlocks(ABC):
 
     @property
     def has_points(self) -> bool:
-        """Whether forces are found at the points of contacts, not of faces as a whole."""
+        """Whether forces are computed at contact points, not for whole faces."""
         return self.columns.fails or self.finite
 
     @cached_property
     def points(self) -> np.ndarray:
-        """`law.points_on`."""
+        """Contact points [c, points, d] of `law.points_on`."""
         return points_on(self.contacts, self.columns.rules)
 
 
 def masses_of(cut: Cut, density: np.ndarray, rotations: int) -> np.ndarray:
-    """Return the matrices of mass and inertia about the centroids [N, F, F] of blocks of densities
-    [N], kg/m3, with so many rotations."""
+    """Return mass and inertia matrices about the centroids [N, F, F] from densities [N], kg/m3."""
     dim, second = cut.body.dim, cut.second_moment
     found = np.zeros((cut.count, *[dim + rotations] * 2))
     found[:, :dim, :dim] = cut.volume[:, None, None] * np.eye(dim)
@@ -134,7 +133,7 @@ def masses_of(cut: Cut, density: np.ndarray, rotations: int) -> np.ndarray:
 
 
 def steady_fields(scene: AnyScene, dim: int) -> tuple[np.ndarray, np.ndarray | None]:
-    """Return the gravity [d], m/s2, and the prestress [d, d], Pa, of a scene; None without."""
+    """Return gravity [d], m/s2, and prestress [d, d], Pa (None without), of a scene."""
     axes = np.array([1]) if dim == 1 else np.arange(dim)
     gravity, stress = np.zeros(dim), None
     if scene.gravity is not None:
@@ -169,15 +168,14 @@ def form_of(blocks: RigidBlocks) -> KernelFlags:
 
 
 def coupled(masses: np.ndarray) -> bool:
-    """Return whether rotations of some block about different axes have inertia in common."""
+    """Return whether the inertia tensor of some block has products of inertia."""
     diagonal = np.diagonal(masses, axis1=1, axis2=2)
     apart = masses - diagonal[:, :, None] * np.eye(masses.shape[1])
     return bool((np.abs(apart) > 1e-12 * diagonal[:, -1, None, None]).any())
 
 
 def constants(blocks: RigidBlocks, dt: float, masses: np.ndarray) -> Blocks:
-    """Return the constants of the blocks for steps of dt, s; masses : matrices of what moves [N, F,
-    F]."""
+    """Return the constants of blocks with these mass matrices [N, F, F] for steps of dt, s."""
     damping, tensor = blocks.scene.damping, masses[:, blocks.dim :, blocks.dim :]
     drag = 0.5 * dt * (damping.alpha or 0.0)
     return Blocks(
@@ -191,14 +189,14 @@ def constants(blocks: RigidBlocks, dt: float, masses: np.ndarray) -> Blocks:
 
 
 def chunks(blocks: RigidBlocks) -> Chunks:
-    """Return the table of contacts, with their tractions under a prestress."""
+    """Return the contacts in chunks, with their tractions under a prestress."""
     own, met = blocks.columns, blocks.contacts
     upper = ((), ((0, 0),), ((0, 0), (1, 1), (0, 1)))[blocks.dim - 1]
     share, start = own.bending[met.column] * met.area, None
     second = np.array([share * met.spread[:, i, j] for i, j in upper])
     if blocks.prestress is not None:
         start = carried(blocks)
-        if blocks.dim == 1:  # where all jumps are along the axis
+        if blocks.dim == 1:  # there jumps are along the axis, without a frame
             start *= met.frame[:, 0]
     return chunks_of(
         met,
@@ -213,10 +211,10 @@ def chunks(blocks: RigidBlocks) -> Chunks:
 
 
 def carried(blocks: RigidBlocks) -> np.ndarray:
-    """Return the gap and the slips that stand for the prestress in each contact [c, d], m."""
+    """Return the gap and slips [c, d], m, that give each contact its traction under prestress."""
     met, own = blocks.contacts, blocks.columns
     traction = (met.frame @ blocks.prestress @ met.frame[:, 0, :, None])[..., 0]
     law = Law(*(x[met.column] if np.ndim(x) else x for x in own.law))
     gap, shear = gap_under(law, parts_of(law), traction[:, 0]), own.shear[met.column, None]
-    still = np.zeros_like(traction[:, 1:])  # on rollers
+    still = np.zeros_like(traction[:, 1:])  # rollers have no shear stiffness
     return np.column_stack([gap, -np.divide(traction[:, 1:], shear, out=still, where=shear > 0)])

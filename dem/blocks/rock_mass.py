@@ -1,4 +1,4 @@
-"""Rigid blocks of a rock mass from its scene."""
+"""The rigid blocks of a rock mass."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -32,7 +32,7 @@ from jointwave.dem.sides.domain import surroundings_of
 class BlocksOfRockMass(RigidBlocks):
     """A rock mass as rigid blocks.
 
-    left_over : the part of the intact rock's stiffness that they cannot have.
+    left_over : the part of the intact rock's stiffness that rigid blocks cannot represent.
     """
 
     scene: RockMass
@@ -42,13 +42,13 @@ class BlocksOfRockMass(RigidBlocks):
 
     @cached_property
     def receivers(self) -> PointsAndJoints:
-        """What is recorded; raises SceneError for a point outside the rock."""
+        """Its receivers; raises SceneError for a point outside the rock."""
         return PointsAndJoints(*receivers_of(self.scene, self.cut, self.contacts, self.onto))
 
     @property
     def bodies(self) -> Bodies:
-        """Its blocks as snapshots show them: in the plane polygons and the slip of joints, in space
-        the faces of polyhedra, in triangles."""
+        """Bodies of its blocks for snapshots, in triangles: in the plane polygons, with the slip of
+        joints; in space the faces of polyhedra."""
         cut, contacts, joints = self.cut, self.cut.contacts, None
         if self.dim == 2:
             of, pieces = np.arange(cut.count), cut.outlines
@@ -69,7 +69,7 @@ class BlocksOfRockMass(RigidBlocks):
 
 
 def blocks_of(scene: RockMass) -> BlocksOfRockMass:
-    """Return the rigid blocks of a scene; raises SceneError if they cannot be made."""
+    """Return the rigid blocks of a rock mass; raises SceneError if the scene has no valid cut."""
     further, sides = further_sets(scene), shape_of(scene.domain).sides
     cut = blocks_of_scene(scene, further)
     try:
@@ -110,8 +110,8 @@ def blocks_of(scene: RockMass) -> BlocksOfRockMass:
 def _columns(
     scene: RockMass, cut: Cut, contacts: Contacts, further: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds of joints, as `RigidJoints` has them [columns, 3], and the kind of each
-    contact [c], NO_SET for none."""
+    """Return the kinds of joints [columns, 3], see `RigidJoints`, and the kind of each contact [c],
+    NO_SET for none."""
     joint_set = contacts.column
     if not scene.regions:
         sets = len(scene.joint_sets) + further
@@ -121,18 +121,18 @@ def _columns(
     kinds, own = np.unique(
         np.column_stack([joint_set[found], regions]), axis=0, return_inverse=True
     )
-    column[found] = own.reshape(-1)  # numpy 2.0 gave it another shape
+    column[found] = own.reshape(-1)  # its shape differs in numpy 2.0
     return kinds, column
 
 
 def _without_set(
     scene: RockMass, cut: Cut, further: list[JointSet], contacts: Contacts, alone: np.ndarray
 ) -> np.ndarray:
-    """Return the stiffness, normal and in shear [2, n], Pa/m, of some contacts (int array), of rock
-    where no set made the cut and then of walls.
+    """Return normal and shear stiffness [2, n], Pa/m, of contacts without a joint set: those within
+    intact rock, then those with walls.
 
-    A fixed side is a wall behind the rock from each block's centroid to the side, as stiff as that
-    rock is: half a block. A roller side is such a wall without stiffness in shear.
+    A contact with a fixed side is as stiff as the rock between the block's centroid and the side. A
+    roller side has no shear stiffness.
     """
     pairs, centre, normal = contacts.blocks, contacts.centre, contacts.frame[:, 0]
     cuts, held = alone[pairs[alone, 1] < cut.count], alone[pairs[alone, 1] >= cut.count]
@@ -149,10 +149,10 @@ def _without_set(
 
 
 def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) -> Columns:
-    """Return the law of a scene's contacts.
+    """Return the laws of all contacts.
 
-    joints : of the sets. others : stiffness of further contacts [2, n], in separate columns, always
-    linear.
+    joints : of the joint sets. others : stiffness [2, n], Pa/m, of contacts without a set, linear,
+    one column each.
     """
     sets, made = scene.joint_sets, len(joints.normal)
     stiffness = np.append([joints.normal, joints.shear], others, axis=1)
@@ -160,7 +160,7 @@ def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) ->
     which = np.full(len(normal), len(sets))
     which[:made] = np.minimum(joints.kinds[:, 0], len(sets))
     rock = None
-    if any(one.maximum_closure is not None for one in sets):  # at most all but a billionth of it
+    if any(one.maximum_closure is not None for one in sets):  # rock compliance < the contact's
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
         rock[which == len(sets)] = 0.0
     eta, laws = _time_constants(scene, stiffness, which), [*sets, JointLaw()]
@@ -169,10 +169,10 @@ def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) ->
 
 
 def _time_constants(scene: RockMass, stiffness: np.ndarray, which: np.ndarray) -> np.ndarray | None:
-    """Return viscosity over stiffness, normal and in shear [2, columns], s; None without any.
+    """Return viscosity over stiffness, normal and in shear [2, columns], s; None without dashpots.
 
-    A dashpot eta K of a joint within a contact of K' is one of eta K'^2 / K across the contact, to
-    the first order in omega eta: rock beside the joint takes a part of its motion.
+    A dashpot eta K of a joint of stiffness K, in a contact of K' (joint and rock in series), acts
+    across the contact as eta K'^2 / K, to first order in omega eta.
     """
     own = set_time_constants(scene)
     if own is None:
@@ -185,7 +185,7 @@ def _time_constants(scene: RockMass, stiffness: np.ndarray, which: np.ndarray) -
 
 
 def _rules(scene: RockMass, which: np.ndarray) -> list[Rule]:
-    """Return the rules of all columns, one where they are the same."""
+    """Return the rules of all columns, or one rule if they are equal."""
     of_sets = [*((one.point_rule, one.contact_points) for one in scene.joint_sets), CUT]
     named: list[Rule] = [of_sets[k] for k in which]
     return named[:1] if len(set(named)) == 1 else named

@@ -1,8 +1,8 @@
-"""Contacts in chunks of 64, and tiles of chunks and blocks that one pass takes through many steps.
+"""Contacts in chunks of 64, and tiles of chunks and blocks that a pass takes through many steps.
 
-Contacts are ordered by the lower of their blocks. A tile's contacts join its own blocks to one
-another and to those of the next tile: before it moves all its blocks have their forces, and what
-lies two tiles on is not asked for. The better blocks are ordered, the narrower tiles are.
+Contacts are ordered by the lower of their block numbers. A tile's contacts join its own blocks to
+one another and to those of the next tile only. So all forces on a tile's blocks are complete after
+its own contacts and those of the tile before. Tiles are small if neighbours have close numbers.
 """
 
 from typing import Any, NamedTuple
@@ -13,18 +13,17 @@ from jointwave.dem.contacts.faces import Contacts
 from jointwave.numerics.cache_lines import zeros
 
 LANES = 64  # contacts in a chunk
-LEAST = 16  # chunks of a tile: a step of one costs some 0.2 us beside its work
+LEAST = 16  # chunks of a tile: a step of a tile has an overhead of some 0.2 us
 
 
 class Chunks(NamedTuple):
-    """Contacts in chunks, and tiles of these.
+    """Contacts in chunks, and tiles of chunks.
 
-    pair : int32 array [chunks, 2 LANES], i and j times the freedoms of a block, where their motion
-    begins, with a third row where joints differ, the column of the law's table. table : float array
-    [chunks, rows LANES], rows as in `KernelFlags.table`. place : int array [c], where each contact
-    is, chunk times LANES plus lane. row_from : int array [chunks], where the motion of the first
-    block of a chunk begins whose contacts join one block after the other; -1 of other chunks.
-    first_chunk, first_block : int arrays [tiles + 1].
+    pair : int32 [chunks, 2 LANES], offsets of the motion of blocks i and j (number times freedoms);
+    where joints differ, a third row has the column of the law's table. table : [chunks, rows
+    LANES], rows as in `KernelFlags.table`. place : of each contact, chunk times LANES plus lane
+    [c]. row_from : of a chunk whose contacts join consecutive blocks, the offset of the first; else
+    -1 [chunks]. first_chunk, first_block : of each tile [tiles + 1].
     """
 
     pair: np.ndarray
@@ -48,12 +47,11 @@ def chunks_of(
 ) -> Chunks:
     """Return contacts in chunks.
 
-    count : of blocks; a j from there on is a wall. freedoms : of a block. law : int array [c],
-    column of each; None where all joints are alike. extent : as `KernelFlags.table` has it, with
-    finite rotations [c, d], m. start : gap and slips that stand for what each carries at first
-    [c, d], m. points : places in the face, m, from its centre, and area of each point [c, points,
-    d]. second : second moments of faces without points, as `KernelFlags.table`
-    has them [c, d (d - 1) / 2].
+    count : number of blocks; a j from there on is a wall. freedoms : of a block. law : column of
+    each contact [c]; None where all joints are equal. start : gap and slips that give the initial
+    tractions [c, d], m. points : places in the face, m, from its centre, and area of each point
+    [c, points, d]. extent [c, d], m, second [c, d (d - 1) / 2], m^(d + 1) : see
+    `KernelFlags.table`.
     """
     blocks, dim = contacts.blocks, contacts.frame.shape[1]
     axes = contacts.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n
@@ -76,7 +74,7 @@ def chunks_of(
     pair = _chunks(pair.astype(np.int32), "edge")
     i, j = pair[:, :LANES], pair[:, LANES : 2 * LANES]
     steps = np.diff(i, axis=1)
-    if dim == 1:  # there the last chunk may be a part
+    if dim == 1:  # its kernel accepts a last chunk that is not full
         steps[-1:, (len(order) - 1) % LANES :] = freedoms
     follow = (steps == freedoms).all(axis=1) & (j - i == freedoms).all(axis=1)
     return Chunks(
@@ -97,8 +95,8 @@ def _chunks(values: np.ndarray, mode: Any) -> np.ndarray:
 
 
 def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
-    """Return the first chunk of each tile, and where the last one ends, of contacts by their lower
-    and higher blocks [c]: a tile begins beyond all blocks that the one before the last touches."""
+    """Return the first chunk of each tile and the end of the last, from the lower and higher block
+    of each contact [c]. A tile begins after all blocks that the tile before the last touches."""
     begins, reach = low[::LANES], np.maximum.accumulate(high)
     found = [0]
     while found[-1] < len(begins) or len(found) == 1:
@@ -109,8 +107,10 @@ def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
 
 
 def marks(at: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return recorded blocks or contacts at places [n] by the tile that they are in, of tiles that
-    begin at `first` [tiles + 1]: the first of each [tiles + 1], and where each is, ascending, with
-    its row in the samples [2, n]."""
+    """Sort recorded blocks or contacts at places [n] into tiles that begin at `first` [tiles + 1].
+
+    Return the first one of each tile [tiles + 1], and their places, ascending, with the rows in the
+    samples [2, n].
+    """
     row = np.argsort(at, kind="stable")
     return np.searchsorted(at[row], first), np.stack([at[row], row])

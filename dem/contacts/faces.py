@@ -12,15 +12,15 @@ from jointwave.dem.sides.boundaries import facets_on, freedoms, levers
 
 
 class Contacts(NamedTuple):
-    """Contacts [c], those of the blocks first and in their order.
+    """Contacts [c]: between blocks, then across periodic sides, then with walls.
 
-    blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). frame : [c, d, d],
-    the normal from i to j, then the tangents. arm : [c, 2, d], from the centroids of i and j, where
-    they touch, to the centre, m. centre : [c, d], m, that of block i's face. spread : second
-    moments over the area, in the frame's tangents [c, d - 1, d - 1], m2. column : of the law [c];
-    before there is one, the joint set, NO_SET for none. excess : what of the compliance is the
-    rock's beside the joint, normal and in shear [c, 2], m/Pa; None without. walls : names of the
-    sides or ends that stand still, or are shaken. outlines : corners of the faces, m.
+    blocks : i and j [c, 2]; a wall is a j beyond the last block. area : m^(d-1). frame : normal
+    from i to j, then the tangents [c, d, d]. arm : from the centroids of i and j, where they touch,
+    to the centre [c, 2, d], m. centre : of block i's face [c, d], m. spread : second moments over
+    the area, in the tangents [c, d - 1, d - 1], m2. column : of the law [c]; at first the joint
+    set, NO_SET for none. excess : compliance of the rock beside the joint, normal and in shear
+    [c, 2], m/Pa; None without. walls : names of fixed or shaken sides or ends. outlines : corners
+    of the faces, m.
     """
 
     blocks: np.ndarray
@@ -35,7 +35,7 @@ class Contacts(NamedTuple):
     outlines: Any = None
 
     def some(self, rows: np.ndarray) -> "Contacts":
-        """Return some of the contacts, without their outlines."""
+        """Return the contacts of these rows, without their outlines."""
         kept = (None if one is None else one[rows] for one in self[:-2])
         return Contacts._make([*kept, self.walls, None])
 
@@ -48,8 +48,8 @@ def contacts_of(
 ) -> Contacts:
     """Return all contacts of blocks, with the joint set of each.
 
-    across : contacts across pairs of periodic sides, and by which blocks j stand elsewhere [d], m.
-    sides : names of the boundary's sides, in order. walls : of those that stand still.
+    across : contacts across pairs of periodic sides, and the shift of their blocks j [d], m.
+    sides : names of the boundary's sides, in order. walls : names of those that are walls.
     """
     parts, edges = [(cut.contacts, np.zeros(cut.body.dim)), *across], cut.boundary
     pairs, area, centre, normal, second, joint_set = (
@@ -79,7 +79,7 @@ def contacts_of(
 
 
 def _some(pieces: Outlines, rows: np.ndarray) -> Outlines:
-    """Return some of the pieces."""
+    """Return the pieces of these rows."""
     size = np.diff(pieces.first)[rows]
     first = np.append(0, np.cumsum(size))
     at = np.arange(first[-1]) + np.repeat(pieces.first[rows] - first[:-1], size)
@@ -87,13 +87,13 @@ def _some(pieces: Outlines, rows: np.ndarray) -> Outlines:
 
 
 def extents(contacts: Contacts, points: np.ndarray, blocks: int) -> np.ndarray:
-    """Return how far blocks j reach behind the centres of faces, and these along their tangents
-    [c, d], m: points of blocks i that move on beyond carry nothing.
+    """Return the extent of blocks j behind the centres of faces, and of the faces along their
+    tangents [c, d], m: points of blocks i beyond it carry nothing.
 
-    A face reaches as far as the rectangle with its second moments, and half as far again as its
-    points: corners leave it as late as midpoints do. Walls reach everywhere.
+    A face extends half a side of the rectangle with its second moments, and at least 1.5 times as
+    far as its points, so that corner points leave it no earlier than midpoints. Walls are infinite.
 
-    points : as `law.points_on` has them. blocks : their number.
+    points : of `law.points_on`. blocks : their number.
     """
     half = np.sqrt(3 * np.diagonal(contacts.spread, axis1=1, axis2=2))
     farthest = 1.5 * np.abs(points[..., :-1]).max(axis=1)
@@ -104,8 +104,8 @@ def extents(contacts: Contacts, points: np.ndarray, blocks: int) -> np.ndarray:
 
 
 def jumps_of(frame: np.ndarray, arm: np.ndarray, rotations: int) -> np.ndarray:
-    """Return the matrices [c, F, F] that make the motion of blocks their part of the jump at the
-    centres of faces with these frames [c, d, d], and of the rotation; arm : [c, d], m."""
+    """Return the matrices [c, F, F] from a block's motion to its part of the jump at the centre of
+    a face and of the relative rotation; frame : [c, d, d]. arm : [c, d], m."""
     count, dim = arm.shape
     found = np.zeros((count, dim + rotations, dim + rotations))
     found[:, :dim] = frame @ levers(arm).swapaxes(1, 2) @ freedoms(dim, rotations).T
@@ -117,7 +117,7 @@ def jumps_of(frame: np.ndarray, arm: np.ndarray, rotations: int) -> np.ndarray:
 def springs_of(
     normal: np.ndarray, shear: np.ndarray, area: np.ndarray, spread: np.ndarray, rotations: int
 ) -> np.ndarray:
-    """Return the stiffness of faces against their jumps and rotations [c, F, F], N/m and N m.
+    """Return stiffness matrices of faces for jump and relative rotation [c, F, F], N/m and N m.
 
     normal, shear : Pa/m [c]. area : [c]. spread : as in `Contacts`.
     """

@@ -1,4 +1,4 @@
-"""The law of contacts in columns, and the points of contacts by the rule of each column."""
+"""The joint law of contacts, one column for each kind, and the contact points of each column."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -13,17 +13,17 @@ from jointwave.cases.schema.joint import JointLaw
 from jointwave.dem.contacts.faces import Contacts
 from jointwave.joints.law import Law, law, stiffest
 
-#: Rule of points, and their number along each tangent.
+#: Name of a rule of points, and their number along each tangent.
 Rule = tuple[str, int | None]
 
 
 class Columns(NamedTuple):
-    """The law in its columns, and K_n and K_s of each [columns], Pa/m, as they are.
+    """The joint law in columns, with the initial K_n and K_s of each [columns], Pa/m.
 
-    stiffest : K_n and K_s of joints that have closed as far as is in reach, and slide where that
-    lifts them [2, columns], Pa/m. time_constants : viscosity over stiffness, normal and in shear
-    [2, columns], s; None without dashpots. rules : of points and their number, one for all or one a
-    column. fails : whether points have a history of their own.
+    stiffest : K_n and K_s at the largest closure in reach, sliding dilatant joints included
+    [2, columns], Pa/m. time_constants : viscosity over stiffness, normal and in shear [2, columns],
+    s; None without dashpots. rules : of contact points, one for all or one a column. fails :
+    whether joints can open, slip or break, point by point.
     """
 
     law: Law
@@ -36,7 +36,7 @@ class Columns(NamedTuple):
 
     @property
     def bending(self) -> np.ndarray:
-        """Part of a face's second moments that its points have, by column."""
+        """Second moments of the contact points over those of the face, by column."""
         return np.resize([bending(*rule) for rule in self.rules], len(self.normal))
 
 
@@ -51,11 +51,11 @@ def columns_of(
     rules: list[Rule],
     shears: bool = True,
 ) -> Columns:
-    """Return the law of contacts in columns, each of one of some joint laws (int array [columns]).
+    """Return the joint law in columns; which : index in `laws` of each column [columns].
 
-    stiffness : normal and in shear [2, columns], Pa/m. eta : viscosity over these, s; None without
-    dashpots. rock : what rock has of the compliance, m/Pa; None where no joint stiffens. rules : as
-    in `Columns`. shears : whether there is motion along joints.
+    stiffness : normal and in shear [2, columns], Pa/m. eta : viscosity over stiffness, s; None
+    without dashpots. rock : the rock's part of the compliance, m/Pa; None where no joint stiffens.
+    rules : as in `Columns`. shears : whether there is motion along joints.
     """
     (normal, shear), tension = stiffness, np.array([one.tension is not False for one in laws])
     strengths, tension = strength_of(laws, which).strengths(shears), tension[which]
@@ -67,8 +67,8 @@ def columns_of(
 
 
 def points_on(contacts: Contacts, rules: list[Rule]) -> np.ndarray:
-    """Return places, m, from the centre and along the tangents, and the area of each point of all
-    contacts [c, points, d]; where they are fewer, points of no area fill them up.
+    """Return the points of all contacts [c, points, d]: places, m, from the centre along the
+    tangents, and areas; contacts with fewer points have some of zero area.
 
     rules : one for all or one a column.
     """
@@ -88,8 +88,8 @@ def points_on(contacts: Contacts, rules: list[Rule]) -> np.ndarray:
 
 
 def _grid(spread: np.ndarray, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return places [c, points, d - 1] and shares [c, points] of a rule, places and weights on an
-    edge from 0 to 1, on edges and on the parallelograms with these second moments."""
+    """Return places [c, points, d - 1] and area fractions [c, points] of a tensor-product rule with
+    places x and weights w on [0, 1], on parallelograms with these second moments."""
     axes = spread.shape[1]
     variance, turn = np.linalg.eigh(spread)
     half = (turn * np.sqrt(3 * np.maximum(variance, 0.0))[:, None]) @ turn.swapaxes(1, 2)
@@ -99,8 +99,8 @@ def _grid(spread: np.ndarray, x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray,
 
 
 def _corners(contacts: Contacts, own: np.ndarray) -> np.ndarray:
-    """Return the corners of some contacts, from the centre and along the tangents [c, k, d - 1], m;
-    where they are fewer the last one is repeated."""
+    """Return the corners of contacts, from the centre along the tangents [c, k, d - 1], m; the last
+    corner is repeated to fill the array."""
     corners, first = contacts.outlines
     begin, end = first[own, None], first[own + 1, None]
     at = np.minimum(begin + np.arange((end - begin).max(initial=1)), end - 1)

@@ -1,20 +1,19 @@
-"""The critical step of a rock mass of rigid blocks.
+"""The critical time step of rigid blocks.
 
-The critical step, with dashpots and what holds the sides, follows from a bound block by block, on
-stiffness and damping together. The energy of a spring between two blocks, k (a - b)^2, is at most
-2 k a^2 + 2 k b^2, so that the stiffness matrix is at most twice its own diagonal blocks K_i, each
-that of block i with its neighbours held:
+A bound on stiffness and damping, block by block, gives the step. The energy of a spring between two
+blocks, k (a - b)^2, is at most 2 k a^2 + 2 k b^2. So the stiffness matrix is at most twice its
+diagonal blocks K_i, where K_i is the stiffness of block i with its neighbours held:
 
     max_i lambda(K_i, M_i)  <=  omega^2  <=  2 max_i lambda(K_i, M_i).
 
-The lower bound is the motion of one block alone. The step that follows from the upper one is thus
-never above the critical step and at most 30 % below it; in a square lattice where translation is
-fastest it is equal to it.
+The lower bound is the motion of one block alone. So the step of the upper bound is never above the
+critical step and at most 30 % below it; in a square lattice where translation is fastest both are
+equal.
 
-Slip and opening only take stiffness away; joints that stiffen are as stiff as in the stiffest state
-in reach, and joints that dilate as in `joints.dilation.riding_stiffness`. Dashpots of quiet sides
-take the mean velocity of a step and change no bound, nor does mass-proportional damping; local
-damping alpha makes forces that turn a velocity round 1 + alpha times as large.
+Slip and opening only reduce stiffness. Joints that stiffen have the stiffness of the stiffest state
+in reach, dilatant joints that of `joints.dilation.riding_stiffness`. Dashpots of quiet sides act on
+the mean velocity of a step and do not change the bound, nor does mass-proportional damping. Local
+damping alpha makes forces that reverse a velocity 1 + alpha times as large.
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,9 +26,9 @@ from jointwave.dem.contacts.law import Columns
 from jointwave.dem.sides.surroundings import EndSpring
 from jointwave.numerics.critical_step import critical_step
 
-ENOUGH_BLOCKS = 2000  # of a row of equal ones, for its critical step
-ALIKE = 1e-9  # relative, masses of equal blocks
-CLOSE_ENOUGH = 1e-14  # relative, to the largest eigenvalue
+ENOUGH_BLOCKS = 2000  # of a row of equal blocks, for its critical step
+ALIKE = 1e-9  # relative difference of masses of equal blocks
+CLOSE_ENOUGH = 1e-14  # relative error of the largest eigenvalue
 
 
 def critical_time_step(
@@ -39,11 +38,10 @@ def critical_time_step(
     local: float,
     springs: Sequence[EndSpring] | None = None,
 ) -> float:
-    """Return a lower bound of the critical step, s; of blocks one after the other the step itself,
-    to the last digits.
+    """Return a lower bound of the critical step, s; of blocks in a row the step itself.
 
-    masses : matrices of the blocks [N, F, F]. local : Cundall's damping. springs : of the ends of a
-    row; None where blocks lie otherwise.
+    masses : matrices of the blocks [N, F, F]. local : Cundall's damping. springs : at the ends of a
+    row; None for blocks that are not in a row.
     """
     eta, damping, back = columns.time_constants, np.zeros(1), np.zeros(0)
     if springs is not None:
@@ -75,12 +73,12 @@ def critical_time_step(
 
 
 def squared_frequencies(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
-    """Return the bound of each block on the square of the largest frequency [N], 1/s2."""
+    """Return each block's bound on the square of the largest angular frequency [N], 1/s2."""
     return _highest(_stiffness(contacts, columns, columns.stiffest, masses)[0], masses)
 
 
 def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:
-    """Return twice the largest eigenvalue of each block's matrix [N, F, F] over its inertia."""
+    """Return twice the largest eigenvalue of M^-1 K for each block, both [N, F, F]."""
     back = np.linalg.inv(np.linalg.cholesky(masses))
     return 2 * np.linalg.eigvalsh(back @ matrices @ back.swapaxes(1, 2))[:, -1]
 
@@ -88,9 +86,11 @@ def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:
 def _stiffness(
     contacts: Contacts, columns: Columns, values: Iterable[np.ndarray], masses: np.ndarray
 ) -> np.ndarray:
-    """Return the matrix of each block against what it touches, and, where contacts are those of a
-    row, of the next one's motion in what acts on it [2, N, F, F], of stiffness or viscosity per
-    area in each column, normal and in shear, with the second moments of the points."""
+    """Return the diagonal blocks of the stiffness or damping matrix, and for a row the blocks below
+    them [2, N, F, F].
+
+    values : stiffness or viscosity per area of each column, normal and in shear.
+    """
     rotations = masses.shape[1] - contacts.frame.shape[1]
     spread = columns.bending[contacts.column, None, None] * contacts.spread
     normal, shear = (x[contacts.column] for x in values)
@@ -107,8 +107,8 @@ def _stiffness(
 def begin_of(
     contacts: Contacts, columns: Columns, masses: np.ndarray
 ) -> tuple[Contacts, np.ndarray]:
-    """Return contacts and matrices of a row with the critical step of the whole: of equal blocks
-    and joints, the first; no longer one has an eigenvalue larger by 1e-6."""
+    """Return contacts and masses of a shorter row with the same critical step: of equal blocks and
+    joints, the first ENOUGH_BLOCKS; the largest eigenvalue of a longer row is within 1e-6."""
     count, eta = len(masses), columns.time_constants
     joints, values = count - 1, [*columns.stiffest, *([] if eta is None else eta)]
     alike = all((one[:joints] == one[0]).all() for one in values)
@@ -125,7 +125,7 @@ def begin_of(
 
 
 def lower_band(matrices: np.ndarray) -> np.ndarray:
-    """Return the lower band [2 F, N F] of a symmetric matrix, of its diagonal blocks and those
+    """Return the lower band [2 F, N F] of a symmetric matrix from its diagonal blocks and those
     below them [2, N, F, F]."""
     _, count, size, _ = matrices.shape
     found = np.zeros((2 * size, count, size))
@@ -138,10 +138,10 @@ def lower_band(matrices: np.ndarray) -> np.ndarray:
 
 
 def largest_eigenvalue(band: np.ndarray) -> float:
-    """Return the largest eigenvalue of a symmetric matrix by its lower band, by bisection for the
-    shift that makes s - K positive definite.
+    """Return the largest eigenvalue of a symmetric matrix K, given its lower band, by bisection for
+    the shift s from which s - K is positive definite.
 
-    A long row has its largest eigenvalues so close together that Lanczos takes minutes.
+    Lanczos takes minutes: the largest eigenvalues of a long row are close together.
     """
     whole = np.abs(band).sum(axis=0)
     for off in range(1, len(band)):

@@ -1,10 +1,10 @@
 """Receivers of rigid blocks in any dimension: motion and stress at points, tractions at joints.
 
-The motion of a block is that of the rock in its middle. Between blocks that a cut through intact
-rock parts, motion and stress at a point are interpolated: those of the point's block, and their
-gradient by least squares over its neighbours, which is exact to second order. A triangle at a face
-or a joint has too few of these: the next ones, which point as it does, count too. Where all
-neighbours are beyond joints, the block moves as it is: u + phi x r, with its mean stress.
+A block's motion is that of the rock at its centroid. Within intact rock that is cut into blocks,
+motion and stress at a point are the block's own plus a gradient by least squares over neighbouring
+blocks: exact to second order. A triangle at a boundary or a joint has too few neighbours; then
+neighbours of neighbours, of the same orientation, are added. A block between joints on all sides
+moves as a rigid body, u + phi x r, with its mean stress.
 """
 
 from typing import NamedTuple
@@ -19,19 +19,19 @@ from jointwave.cases.partition.lattice import squared
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.dem.contacts.faces import Contacts
 
-#: Of the largest singular value of the neighbours' places: below it they lie on a line or a plane.
+#: Ratio of singular values below which neighbours lie on a line or a plane.
 FLAT = 0.05
-#: Of a value that triangles have, the part of the neighbours: those that point up and those that
-#: point down are displaced against each other by the strain times their size.
+#: Weight of the neighbours in a value of triangles: triangles of opposite orientation are displaced
+#: against each other by the strain times their size.
 SHARED = 0.5
 TRIANGLE = 3  # neighbours of a triangle within rock
-#: Of a contact's size: the distance below which it shares a corner, or lies in one plane.
+#: Distance, over the size of a contact, below which corners coincide or faces are coplanar.
 SAME = 1e-6
 
 
 class Stencil(NamedTuple):
-    """One side of a receiver: blocks or contacts that it is read from, the nearest first, their
-    weights, and the arm that is left to the rotation of the first [d], m."""
+    """Interpolation at one side of a receiver: blocks or contacts, the nearest first, their
+    weights, and the arm at which the rotation of the first acts [d], m."""
 
     receiver: int
     at: list[int]
@@ -42,11 +42,11 @@ class Stencil(NamedTuple):
 class Receivers(NamedTuple):
     """Receivers as linear combinations of blocks and contacts.
 
-    places : blocks that are read [r]. volume, second : of each, m^d [r], and its second moments,
-    m^(d + 2) [r, d, d]. touching : contacts of the places [k, 3]: row of `watched`, place, and
-    whether the place is block j. watched : contacts that are read [w]. faces : these contacts.
-    motion : matrix [points d, r F], of the places' freedoms. weights : matrix [points, r]. joints :
-    matrix [joints, w].
+    places : recorded blocks [r]. volume : m^d [r]. second : second moments [r, d, d], m^(d + 2).
+    touching : contacts of these blocks [k, 3]: row of `watched`, row of `places`, and whether the
+    block is j. watched : recorded contacts [w]. faces : these contacts. motion : matrix from the
+    blocks' freedoms to motion at points [points d, r F]. weights : of blocks at points [points, r].
+    joints : weights of contacts at joints [joints, w].
     """
 
     places: np.ndarray
@@ -63,7 +63,7 @@ class Receivers(NamedTuple):
 def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndarray) -> Receivers:
     """Return the receivers of a scene; raises SceneError for a point outside the rock.
 
-    faces : all contacts, those of the blocks first. onto : of a block, by `boundaries.freedoms`.
+    faces : all contacts, those between blocks first. onto : matrix of `boundaries.freedoms`.
     """
     sets, dim = len(scene.joint_sets), blocks.body.dim
     points, joints = (
@@ -81,7 +81,7 @@ def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndar
 
 
 def stencils_at(scene: RockMass, blocks: Blocks, points: np.ndarray) -> list[Stencil]:
-    """Return how points [m, d] are read in the blocks of a scene; not at all outside the rock."""
+    """Return the stencils of points [m, d] in the blocks of a scene; none for points outside."""
     sets = len(scene.joint_sets)
     sides = sides_at(blocks, points, sets)
     return stencils_in_rock(blocks, points, sides, sets, not squared(scene))
@@ -90,9 +90,10 @@ def stencils_at(scene: RockMass, blocks: Blocks, points: np.ndarray) -> list[Ste
 def stencils_in_rock(
     blocks: Blocks, points: np.ndarray, sides: list[list[int]], sets: int, shared: bool = False
 ) -> list[Stencil]:
-    """Return how points [m, d] are read in the blocks on their sides, by `sides_at`: as a mean.
+    """Return the stencils of points [m, d], whose value is the mean over the blocks on their sides.
 
-    sets : number of joint sets. shared : whether SHARED of the value itself is the neighbours'.
+    sides : of `sides_at`. sets : number of joint sets. shared : whether neighbours have the weight
+    SHARED in the value.
     """
     near, found = rock_neighbours(blocks, sets), []
     least = TRIANGLE if shared and blocks.body.dim == 2 else 0
@@ -107,10 +108,10 @@ def stencils_in_rock(
 
 
 def stencils_on_joints(blocks: Blocks, points: np.ndarray, sets: int, along: bool) -> list[Stencil]:
-    """Return how joints are read near points [m, d]: by the nearest contact.
+    """Return the stencils of joints at points [m, d]: the nearest contact.
 
-    along : whether cuts through intact rock divide joints: then linearly, by the contacts beside
-    it on the joint that lie ahead, too.
+    along : whether cuts through intact rock divide joints; then values are interpolated linearly
+    with the adjacent contacts of the joint on the point's side.
     """
     contacts, found = blocks.contacts, []
     for k, c in enumerate(contact_at(blocks, points, sets).tolist()):
@@ -120,7 +121,7 @@ def stencils_on_joints(blocks: Blocks, points: np.ndarray, sets: int, along: boo
 
 
 def _ahead(contacts: Facets, c: int, at: np.ndarray) -> list[int]:
-    """Return the contacts that meet contact c in its plane, on the side of a point [d]."""
+    """Return coplanar contacts that share a corner with contact c, on the side of a point [d]."""
     away, corners = contacts.centroid - contacts.centroid[c], contacts.outlines.of(c)
     beyond = SAME * float(np.linalg.norm(np.ptp(corners, axis=0)))
     here = contacts.joint_set == contacts.joint_set[c]
@@ -141,9 +142,10 @@ def _stencil(
     beside: np.ndarray | None = None,
     share: float = 1.0,
 ) -> Stencil:
-    """Return how a share of a receiver at a place [d] is read from things with these centres.
+    """Return the stencil of a receiver at a point [d], with total weight `share`.
 
-    beside : which of all but the first lie beside it and have SHARED of the value, bool array.
+    own : blocks or contacts, the nearest first, with their centres. beside : which of the others
+    have the weight SHARED in the value, bool array.
     """
     off, apart = at - centres[own[0]], centres[own[1:]] - centres[own[0]]
     if not len(apart):
@@ -162,9 +164,9 @@ def _stencil(
 def read_by(
     blocks: Blocks, faces: Contacts, onto: np.ndarray, points: list[Stencil], joints: list[Stencil]
 ) -> Receivers:
-    """Return receivers by their stencils, of blocks at points and of contacts at joints.
+    """Return receivers from the stencils of blocks at points and of contacts at joints.
 
-    onto : matrix [F, d + d^2], whose transpose gives the motion of a centroid and its gradient.
+    onto : matrix of `boundaries.freedoms` [F, d + d^2].
     """
     places = np.unique([b for one in points for b in one.at]).astype(np.int64)
     contact, side = np.nonzero(np.isin(faces.blocks, places))

@@ -1,4 +1,4 @@
-"""Samples of blocks as they are read: velocities, rotations, and what acts from outside."""
+"""Velocities, rotations and external forces of recorded blocks, from their samples."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from jointwave.dem.system import BlockSystem
 
 
 def acting(system: BlockSystem, places: np.ndarray, samples: Samples, first: int = 0) -> np.ndarray:
-    """Return the resultants of sides, ends and loads on recorded blocks [r, d + d^2, n], N and N m,
-    as `dem.sides.boundaries` has them, but of the springs of ends the force alone.
+    """Return the resultants of sides, ends and loads on recorded blocks [r, d + d^2, n], N and N m
+    (see `dem.sides.boundaries`); those of end springs have the force only.
 
-    places : the blocks that the samples are of. first : number of the first sample.
+    places : the recorded blocks [r]. first : number of the first sample.
     """
     loads, count = system.loads, samples.velocity.shape[-1]
     found = np.zeros((len(places), loads.onto.shape[1], count))
@@ -31,9 +31,9 @@ def acting(system: BlockSystem, places: np.ndarray, samples: Samples, first: int
 
 
 def turning(quaternion: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Return what unit quaternions [..., 4] add to vectors [..., 3] that they turn.
+    """Return R r - r for unit quaternions, scalar part last [..., 4], and vectors r [..., 3].
 
-    Rr - r = 2 q x (q x r + w r), which keeps the digits of small turns.
+    R r - r = 2 q x (q x r + w r), which keeps the digits of small rotations.
     """
     q, w = quaternion[..., :3], quaternion[..., 3:]
     return 2 * np.cross(q, np.cross(q, r) + w * r)
@@ -42,8 +42,8 @@ def turning(quaternion: np.ndarray, r: np.ndarray) -> np.ndarray:
 def velocity_of(
     blocks: RigidBlocks, samples: Samples, places: np.ndarray | slice = slice(None)
 ) -> np.ndarray:
-    """Return the velocity of recorded blocks [r, F, n], m/s and rad/s; with finite rotations
-    samples have angular momenta. places : the blocks [r]."""
+    """Return velocities of recorded blocks [r, F, n], m/s and rad/s, with finite rotations from the
+    sampled angular momenta; places : the blocks [r]."""
     if not blocks.finite:
         return samples.velocity
     turn = samples.displacement[:, 3:].swapaxes(1, 2)
@@ -54,7 +54,7 @@ def velocity_of(
 
 
 def rotation_vectors(quaternions: np.ndarray) -> np.ndarray:
-    """Return the rotation vectors [..., 3] (rad, up to pi) of quaternions [..., 4]."""
+    """Return rotation vectors [..., 3] (rad, up to pi) from quaternions, scalar last [..., 4]."""
     from scipy.spatial.transform import Rotation  # slow to import
 
     if not quaternions.size:

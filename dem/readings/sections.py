@@ -20,8 +20,8 @@ from jointwave.results.labels import label
 
 
 class Sections(NamedTuple):
-    """Receivers of a pillar: sections between contacts 0 .. N, 0 and N those of the ends, and
-    points between block centres; with the blocks and contacts that are read for them, ascending."""
+    """Receivers of a pillar: sections between contacts 0 .. N (0 and N are the ends) and points
+    between block centres; places, watched : blocks and contacts recorded for them, ascending."""
 
     sections: Interpolation
     points: Interpolation
@@ -37,8 +37,8 @@ class Sections(NamedTuple):
     def shown(
         self, system: BlockSystem, samples: Samples, sample: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the stress along the pillar of each block in a snapshot, the mean of its faces, Pa
-        [N], and no slip."""
+        """Return the axial stress of each block in a snapshot, the mean of its two faces [N], Pa,
+        and no slip."""
         found = stress_at(self, system, samples, sample)
         along = found[:, system.blocks.dim // 2, 0]
         return (along[:-1] + along[1:]) / 2, np.zeros(0)
@@ -46,7 +46,7 @@ class Sections(NamedTuple):
     def dataset(
         self, system: BlockSystem, state: State, samples: Samples, **attributes: Any
     ) -> xr.Dataset:
-        """Return the result of the first samples of a run, with fragments where it is whole."""
+        """Return the result of the samples so far, with fragments once the run is complete."""
         time, scene, count = system.time, system.blocks.scene, samples.velocity.shape[-1]
         found = dataset(
             scene,
@@ -62,7 +62,7 @@ class Sections(NamedTuple):
 
 
 def sections_of(scene: Scene, walls: int) -> Sections:
-    """Return the receivers of a pillar; walls : fixed ends."""
+    """Return the receivers of a pillar; walls : number of fixed or shaken ends."""
     p, record = calibrate(scene), scene.record
     count = p.block_count
     sections = interpolation(p.contact_y, record.stress)
@@ -74,7 +74,7 @@ def sections_of(scene: Scene, walls: int) -> Sections:
 
 
 def waveforms(reads: Sections, system: BlockSystem, samples: Samples) -> dict[str, Any]:
-    """Return samples at the receivers, as `results.dataset.dataset` takes them."""
+    """Return waveforms at the receivers, by the names of `results.dataset.dataset`."""
     stress = stress_at(reads, system, samples)
     at = reads.points._replace(
         left=np.searchsorted(reads.places, reads.points.left),
@@ -96,17 +96,14 @@ def waveforms(reads: Sections, system: BlockSystem, samples: Samples) -> dict[st
 
 
 def between(values: np.ndarray, at: Interpolation) -> np.ndarray:
-    """Return values [node, component, sample] interpolated to places."""
+    """Return values [node, component, sample] interpolated linearly to receivers."""
     weight = at.weight[:, None, None]
     return (1 - weight) * values[at.left] + weight * values[at.right]
 
 
 def stress_at(reads: Sections, system: BlockSystem, samples: Samples, first: int = 0) -> np.ndarray:
-    """Return force over area at sections between contacts, Pa [section, d, n]: that on the far
-    side, with the load itself where steps took its mean.
-
-    reads : what the samples are of. first : number of the first sample.
-    """
+    """Return the force on the far side over the area at sections [section, d, n], Pa; the load has
+    its value at the sample, not its mean over a step. first : number of the first sample."""
     blocks, sections, time = system.blocks, reads.sections, system.time
     crossed = np.unique(np.concatenate([sections.left, sections.right]))
     dim, count, end = blocks.dim, samples.velocity.shape[-1], blocks.count
@@ -130,16 +127,15 @@ def stress_at(reads: Sections, system: BlockSystem, samples: Samples, first: int
 
 
 def in_axes(blocks: RigidBlocks, watched: np.ndarray, contact: np.ndarray) -> np.ndarray:
-    """Return the forces of watched contacts [w] on blocks j, along the axes [w, d, n], N, by their
-    samples [w, rows, n]."""
-    if blocks.dim == 1:  # where all forces are along the axis
+    """Return the forces of contacts [w] on blocks j in global axes [w, d, n], N, from their samples
+    [w, rows, n]."""
+    if blocks.dim == 1:  # there forces are along the axis, without a frame
         return contact[:, :1]
     return blocks.contacts.frame[watched].swapaxes(1, 2) @ contact[:, : blocks.dim]
 
 
 def on_ends(reads: Sections, system: BlockSystem, samples: Samples, first: int) -> np.ndarray:
-    """Return the forces of the start and the end, and the load there, on their blocks [2, d, n],
-    N."""
+    """Return the forces of both ends, loads included, on the end blocks [2, d, n], N."""
     dim, met, blocks = system.blocks.dim, system.blocks.contacts, [0, system.blocks.count - 1]
     moved, moving = (x[np.searchsorted(reads.places, blocks)] for x in samples[:2])
     own = samples._replace(displacement=moved, velocity=moving)
@@ -152,7 +148,7 @@ def on_ends(reads: Sections, system: BlockSystem, samples: Samples, first: int) 
 
 
 def ledger_of(system: BlockSystem, samples: Samples) -> dict[str, Any]:
-    """Return the energies that the scene has, and which they are, as `dataset` takes them."""
+    """Return the energies of the scene's effects and their terms, as arguments of `dataset`."""
     if samples.energy is None:
         return {}
     parts, gravity = system.model.form.parts, system.model.form.gravity
@@ -162,8 +158,8 @@ def ledger_of(system: BlockSystem, samples: Samples) -> dict[str, Any]:
 
 
 def with_breaks(result: xr.Dataset, system: BlockSystem, state: State) -> xr.Dataset:
-    """Return a result with its `fragments`, as JSON in an attribute, and the `break_time` of each
-    joint, s, nan where it holds, where joints soften."""
+    """Return a result; where joints soften, with `fragments` as a JSON attribute and `break_time`
+    of each joint, s, nan where it holds."""
     if not system.model.form.parts.softening:
         return result
     blocks, times = system.blocks, break_times(system, state)
@@ -175,7 +171,7 @@ def with_breaks(result: xr.Dataset, system: BlockSystem, state: State) -> xr.Dat
 
 
 def break_times(system: BlockSystem, state: State) -> np.ndarray:
-    """Return when the joints of a row broke [N - 1], s, nan where they hold. A joint is broken when
+    """Return when the joints of a row broke [N - 1], s, nan where they hold. A joint is broken once
     all its contact points are."""
     form, chunks, time = system.model.form, system.model.chunks, system.time
     rows, place = form.point, chunks.place[: system.blocks.count - 1]
@@ -193,8 +189,8 @@ def fragments(blocks: Any, broken: np.ndarray, velocity: np.ndarray) -> list[dic
     """Return the fragments of a row between its broken joints (bool array [N - 1]), from the start
     on; velocity : of every block [N, d], m/s.
 
-    Each has `from_y` and `to_y` (m, in the unloaded pillar), `mass` (kg) and `velocity` (m/s), of
-    its centre of mass: a number along y or three components.
+    Each has `from_y` and `to_y` (m, in the unloaded pillar), `mass` (kg) and `velocity` of its
+    centre of mass (m/s), along y or in three components.
     """
     first = np.concatenate([[0], np.flatnonzero(broken) + 1])
     edges = calibrate(blocks.scene).contact_y[np.append(first, blocks.count)]

@@ -13,11 +13,12 @@ from jointwave.results.snapshots import Frame, SnapshotRecorder, in_space
 
 
 class Bodies(NamedTuple):
-    """Bodies of blocks, as snapshots show them.
+    """Bodies of blocks for snapshots.
 
-    corners : float array [k, d], m, of a pillar always in space. kind, cells, block : as in
-    `results.snapshots`. owner : the block of each corner [k]. arms : from its centroid [k, d], m.
-    joints : lines whose slip is shown, ends [j, 2, 2], m, and contacts [j]; None without.
+    corners : [k, d], m, of a pillar always in space. kind, cells, block : as in
+    `results.snapshots`. owner : the block of each corner [k]. arms : corners from the block's
+    centroid [k, d], m. joints : lines that show slip, ends [j, 2, 2], m, and contacts [j]; None
+    without.
     """
 
     corners: np.ndarray
@@ -29,9 +30,12 @@ class Bodies(NamedTuple):
     joints: tuple[np.ndarray, np.ndarray] | None
 
     def frame(self, u: np.ndarray, v: np.ndarray, stress: np.ndarray, slip: np.ndarray) -> Frame:
-        """Return a snapshot by displacement and velocity of all blocks [N, F], with finite
-        rotations unit quaternions, scalar last, in the displacement [N, 7]; by the stress of each,
-        Pa [N] or [N, components], and the slip of all contacts, m."""
+        """Return a snapshot.
+
+        u, v : displacement and velocity of all blocks [N, F]; with finite rotations u [N, 7] ends
+        with unit quaternions, scalar part last. stress : of each block [N] or [N, components], Pa.
+        slip : of all contacts, m.
+        """
         moved = corner_motion(u, self.owner, self.arms)
         moving = corner_velocity(u, v, self.owner, self.arms)
         shown = np.zeros(0) if self.joints is None else slip[self.joints[1]]
@@ -39,7 +43,7 @@ class Bodies(NamedTuple):
 
 
 def recorder(system: BlockSystem, state: State) -> SnapshotRecorder | None:
-    """Return the recorder of snapshots; None without. Raises SceneError for too many."""
+    """Return the recorder of snapshots, or None; raises SceneError for too many."""
     blocks = system.blocks
     if blocks.scene.record.fields is None:
         return None
@@ -55,8 +59,8 @@ def recorder(system: BlockSystem, state: State) -> SnapshotRecorder | None:
 
 
 def triangles(pieces: Outlines) -> tuple[np.ndarray, np.ndarray]:
-    """Return triangles between the first corner of each piece and each of its edges that are not at
-    it [cells, 3], and the piece of each [cells]."""
+    """Return each polygon as a fan of triangles about its first corner [cells, 3], and the polygon
+    of each triangle [cells]."""
     first = pieces.first
     piece = np.repeat(np.arange(len(first) - 1), np.diff(first))
     corner = np.arange(len(piece))
@@ -65,11 +69,8 @@ def triangles(pieces: Outlines) -> tuple[np.ndarray, np.ndarray]:
 
 
 def corner_motion(motion: np.ndarray, owner: np.ndarray, arms: np.ndarray) -> np.ndarray:
-    """Return the displacement of corners [..., k, d] of that of blocks [..., N, F], or their
-    velocity.
-
-    owner : the block of each corner [k]. arms : from its centroid [k, d], m.
-    """
+    """Return corner displacements [..., k, d] from block displacements [..., N, F], m, or
+    velocities from velocities; owner, arms : as in `Bodies`."""
     dim = arms.shape[1]
     if motion.shape[-1] == 1:
         motion = in_space(motion)
@@ -83,7 +84,7 @@ def corner_motion(motion: np.ndarray, owner: np.ndarray, arms: np.ndarray) -> np
 def corner_velocity(
     moved: np.ndarray, velocity: np.ndarray, owner: np.ndarray, arms: np.ndarray
 ) -> np.ndarray:
-    """Return the velocity of corners [..., k, d] of displacement and velocity of blocks."""
+    """Return corner velocities [..., k, d] from block displacements and velocities."""
     if moved.shape[-1] < 7:
         return corner_motion(velocity, owner, arms)
     turned = arms + turning(moved[..., owner, 3:], arms)

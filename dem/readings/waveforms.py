@@ -1,16 +1,16 @@
-"""Receivers of a rock mass, at points and on joints, in the form of results.
+"""Waveforms of a rock mass at points and on joints.
 
 The mean stress of a block follows from the forces on it (Love 1927; Weber 1966): with arms x from
-the centroid and forces F, S_ij = sum of x_i F_j, less the inertia of the block's rotation, which
-the moment S_ij - S_ji turns: along the principal axes of its second moments m,
+the centroid and forces F, S_ij = sum of x_i F_j, less the inertia of the rotation that the moment
+S_ij - S_ji accelerates. Along the principal axes of the second moments m this is
 
     V sigma_ij = (m_j S_ij + m_i S_ji) / (m_i + m_j),
 
-tension positive. At rest, and of squares and cubes, it is the symmetric part of S.
+tension positive. At rest, and for squares and cubes, it is the symmetric part of S.
 
 Samples of contacts have the rows, in the contact's frame: force on block j [d], first moments of
-the traction over the face about its centre, by axes in the face and then components [d - 1, d],
-opening and slips [d]. Blocks that do not rotate have no such moments.
+the traction about the face's centre [d - 1 axes in the face, d components], opening and slips [d].
+Blocks without rotations have no first moments.
 """
 
 from typing import Any
@@ -62,7 +62,7 @@ class PointsAndJoints(Receivers):
 def moments(
     receivers: Receivers, system: BlockSystem, samples: Samples, first: int = 0
 ) -> np.ndarray:
-    """Return the sums of arm times force of sides and loads on the places [r, d, d, n], N m."""
+    """Return sums of arm times force of sides and loads on recorded blocks [r, d, d, n], N m."""
     dim, places = system.blocks.dim, receivers.places
     found = acting(system, places, samples, first)[:, dim:]
     return found.reshape(len(places), dim, dim, found.shape[-1])
@@ -75,13 +75,13 @@ def quantities(
     contact: np.ndarray,
     outside: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
-    """Return what is recorded by name, as `results.dataset` takes it.
+    """Return waveforms by the names of `results.dataset`.
 
-    displacement, velocity : of the places [r, F, n]. contact : samples of the watched contacts
-    [w, rows, n]. outside : what else acts on the places, as `mean_stress` takes it.
+    displacement, velocity : of recorded blocks [r, F, n]. contact : samples of the watched contacts
+    [w, rows, n]. outside : as in `mean_stress`.
 
-    Displacement, gap and slip count from the first sample; gap and slip are those of the joint
-    itself, without the strain of the rock that its contact stands for.
+    Displacement, gap and slip are relative to the first sample; gap and slip are those of the joint
+    alone, without the deformation of the rock in its contact.
     """
     found: dict[str, np.ndarray] = {}
     if receivers.weights.shape[0]:
@@ -104,7 +104,7 @@ def quantities(
 
 
 def at_points(receivers: Receivers, motion: np.ndarray) -> np.ndarray:
-    """Return vectors at points [points, n, d] of the motion of places [r, F, n]."""
+    """Return vectors at points [points, n, d] from the motion of recorded blocks [r, F, n]."""
     moved = receivers.motion @ motion.reshape(-1, motion.shape[-1])
     dim = receivers.faces.frame.shape[1]
     return moved.reshape(-1, dim, motion.shape[-1]).swapaxes(1, 2)
@@ -113,10 +113,10 @@ def at_points(receivers: Receivers, motion: np.ndarray) -> np.ndarray:
 def mean_stress(
     receivers: Receivers, contact: np.ndarray, outside: np.ndarray | None = None
 ) -> np.ndarray:
-    """Return the mean stress of the places [r, n, components], Pa, compression positive.
+    """Return the mean stress of recorded blocks [r, n, components], Pa, compression positive.
 
-    contact : samples of the watched contacts [w, rows, n]. outside : sums of arm times force of
-    what else acts on the places [r, d, d, n], N m.
+    contact : samples of the watched contacts [w, rows, n]. outside : `moments` of other forces
+    [r, d, d, n], N m.
     """
     faces, (row, place, side) = receivers.faces, receivers.touching.T
     dim, count = faces.frame.shape[1], contact.shape[-1]
@@ -136,15 +136,15 @@ def mean_stress(
 
 
 def tractions(receivers: Receivers, contact: np.ndarray) -> np.ndarray:
-    """Return the mean traction of the watched contacts [w, n, d], normal and along, Pa."""
+    """Return the mean traction of the watched contacts [w, n, d], normal first, Pa."""
     faces = receivers.faces
     force = contact[:, : faces.frame.shape[1]]
     return force.swapaxes(1, 2) / faces.area[:, None, None]
 
 
 def jumps(receivers: Receivers, contact: np.ndarray) -> np.ndarray:
-    """Return the opening and the slips of the joints of the watched contacts [w, n, d], m, without
-    the strain of the rock that a contact stands for."""
+    """Return the opening and slips of the watched contacts' joints [w, n, d], m, without the
+    deformation of the rock in the contact."""
     faces = receivers.faces
     dim = faces.frame.shape[1]
     excess = faces.excess[:, np.minimum(np.arange(dim), 1)]

@@ -1,9 +1,9 @@
 """Tractions on the boundary of blocks, in one, two or three dimensions.
 
-What acts on a block is known by its resultants: the force, d numbers, and the sums of arm times
-force, d^2 numbers x_i F_j, whose antisymmetric part is the moment about the centroid and whose
-symmetric part the mean stress of the block. A quiet or matched side has the dashpots of Lysmer and
-Kuhlemeyer (1969), a traction -Z v, with the impedances of `cases.material.quiet_sides`.
+Their resultants on a block are the force, d numbers, and the sums of arm times force x_i F_j, d^2
+numbers; the antisymmetric part of these is the moment about the centroid, the symmetric part gives
+the mean stress. A quiet or matched side has the dashpots of Lysmer and Kuhlemeyer (1969), a
+traction -Z v, with the impedances of `cases.material.quiet_sides`.
 """
 
 from collections.abc import Sequence
@@ -15,13 +15,13 @@ import numpy as np
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.measure import Moments, Outlines, outline_moments
 
-#: Axes that each rotation turns, from the first to the second, by the number of rotations.
+#: Axes of each rotation, from the first towards the second, by the number of rotations.
 TURNS: dict[int, list[tuple[int, int]]] = {0: [], 1: [(0, 1)], 3: [(1, 2), (2, 0), (0, 1)]}
 
 
 class BoundaryPoints(NamedTuple):
-    """Points on the boundary: block [m], ascending, place [m, d] and arm from the centroid [m, d],
-    m, outward normal [m, d], and the area that each stands for [m], m^(d-1)."""
+    """Points on the boundary: block [m], ascending, place and arm from the block's centroid [m, d],
+    m, outward normal [m, d], and area [m], m^(d-1)."""
 
     block: np.ndarray
     place: np.ndarray
@@ -31,7 +31,7 @@ class BoundaryPoints(NamedTuple):
 
 
 def facets_on(blocks: Blocks, sides: tuple[str, ...], names: Sequence[str]) -> np.ndarray:
-    """Return the boundary facets on some of the sides, int array; sides : all names, in order."""
+    """Return the indices of boundary facets on named sides; sides : all names, in order."""
     chosen = [k for k, name in enumerate(sides) if name in names]
     return np.flatnonzero(np.isin(blocks.boundary.side, chosen))
 
@@ -39,13 +39,13 @@ def facets_on(blocks: Blocks, sides: tuple[str, ...], names: Sequence[str]) -> n
 def points_on(
     blocks: Blocks, facets: np.ndarray, parts: Outlines | None = None, share: float = 1.0
 ) -> BoundaryPoints:
-    """Return 2^(d-1) points on each of some boundary facets, exact for functions up to quadratic.
+    """Return 2^(d-1) points on each boundary facet, exact for functions up to quadratic.
 
-    They lie one standard deviation of the facet's area from its centroid along its first edge and
-    across it, to both sides: on a rectangle they are Gauss points.
+    They lie one standard deviation of the area from the centroid, to both sides along the first
+    edge and across it: on a rectangle they are Gauss points.
 
-    facets : int array. parts : what of each facet counts; absent: all of it. share : of the second
-    moments that the points have.
+    facets : indices. parts : part of each facet; absent: all of it. share : second moments of the
+    points over those of the facet.
     """
     edge = blocks.boundary
     size, centroid, second = (
@@ -65,7 +65,7 @@ def points_on(
 
 
 def _tangents(normal: np.ndarray, outlines: Outlines, facets: np.ndarray) -> np.ndarray:
-    """Return orthogonal unit vectors in facets [m, d - 1, d], the first along their first edge."""
+    """Return orthogonal unit vectors in facets [m, d - 1, d], the first along the first edge."""
     if normal.shape[1] == 1:
         return np.zeros((len(facets), 0, 1))
     first = outlines.first[facets]
@@ -75,9 +75,8 @@ def _tangents(normal: np.ndarray, outlines: Outlines, facets: np.ndarray) -> np.
 
 
 def freedoms(dim: int, rotations: int) -> np.ndarray:
-    """Return what makes the force and moment [F] on the d displacements and the rotations of a
-    block of its resultants [d + d^2]: a matrix [F, d + d^2]. Transposed it makes the velocity of
-    the centroid and its gradient d v_j / d x_i of the block's velocities."""
+    """Return the matrix [F, d + d^2] from resultants to a block's forces and moments; its transpose
+    maps the block's velocities to that of the centroid and the gradient d v_j / d x_i."""
     found = np.zeros((dim + rotations, dim + dim**2))
     found[:dim, :dim] = np.eye(dim)
     for row, (i, j) in enumerate(TURNS[rotations], start=dim):
@@ -86,7 +85,7 @@ def freedoms(dim: int, rotations: int) -> np.ndarray:
 
 
 def levers(arm: np.ndarray) -> np.ndarray:
-    """Return what makes resultants of forces at the ends of arms [m, d]: [m, d + d^2, d]."""
+    """Return matrices [m, d + d^2, d] from forces at the ends of arms [m, d] to resultants."""
     count, dim = arm.shape
     force = np.tile(np.eye(dim), (count, 1, 1))
     moments = (arm[:, :, None, None] * np.eye(dim)).reshape(count, dim**2, dim)
@@ -111,10 +110,10 @@ def summed(values: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
 def dashpots(
     points: BoundaryPoints, impedance: np.ndarray, row: np.ndarray, count: int
 ) -> np.ndarray:
-    """Return the resultants of the dashpots at points, by the velocity and its gradient of the
-    block of each row, with the sign of a resistance [count, d + d^2, d + d^2].
+    """Return the resistance of dashpots at points [count, d + d^2, d + d^2]: resultants per
+    velocity and velocity gradient of the block of each row.
 
-    impedance : there [m, d, d], Pa s/m. row : of each point [m].
+    impedance : at the points [m, d, d], Pa s/m. row : of each point [m].
     """
     to = levers(points.arm)
     found = to @ (impedance * points.area[:, None, None]) @ to.swapaxes(1, 2)

@@ -1,4 +1,4 @@
-"""The sides of a rock mass, as what acts on the blocks there: dashpots, loads, waves."""
+"""Dashpots, loads and incident waves on the sides of a rock mass."""
 
 from dataclasses import replace
 from math import inf
@@ -35,14 +35,14 @@ from jointwave.dem.sides.loads import Pattern, Source, reactions
 from jointwave.dem.sides.shaking import Base
 from jointwave.dem.sides.surroundings import Surroundings
 
-#: Samples of a field in a period of a pulse, where it is not evaluated at every step.
+#: Samples per period of a pulse, of a field that is not evaluated at every step.
 IN_A_PERIOD = 200
 
 
 def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Surroundings:
-    """Return what acts on the blocks of a scene; sides : names of the boundary's sides, in order.
+    """Return the surroundings of a rock mass; sides : names of the boundary's sides, in order.
 
-    Raises SceneError for a stress that joints which must hold cannot carry.
+    Raises SceneError for a prestress beyond the strength of joints that must hold.
     """
     refuse_beyond_strength(scene)
     quiet = points_on(cut, facets_on(cut, sides, scene.boundaries.sides("quiet")))
@@ -77,8 +77,7 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
 def load_pattern(
     scene: RockMass, blocks: Blocks, sides: tuple[str, ...], load: PlaneLoad
 ) -> Pattern:
-    """Return a pressure, a force or a compliant base of a scene; sides : the names of the blocks'
-    sides, in order."""
+    """Return the forces of a pressure, a point force or a compliant base."""
     history = velocity_of(load, load.amplitude)
     if load.kind == "force":
         return _force(scene, blocks, load, history)
@@ -97,8 +96,8 @@ def load_pattern(
 
 
 def _force(scene: RockMass, blocks: Blocks, load: PlaneLoad, history: LoadHistory) -> Pattern:
-    """Return a force at a point on the blocks that a receiver there reads, as it reads them: what
-    one force does where another acts, that one does here."""
+    """Return a point force on the blocks of a receiver at the point, with the receiver's weights:
+    so two such forces satisfy reciprocity."""
     direction, rows = np.array(load.direction), list[tuple[int, np.ndarray, float]]()
     for one in stencils_at(scene, blocks, np.array([load.at])):
         rows += [(k, 0 * one.arm, weight) for k, weight in zip(one.at, one.weight, strict=True)]
@@ -110,7 +109,7 @@ def _force(scene: RockMass, blocks: Blocks, load: PlaneLoad, history: LoadHistor
 def _covered(
     scene: RockMass, blocks: Blocks, load: PlaneLoad, facets: np.ndarray
 ) -> tuple[np.ndarray, Outlines]:
-    """Return those of some edges that a load acts on in part, and these parts of them."""
+    """Return the edges under a load that acts between two places, and their loaded parts."""
     edges = blocks.boundary.ends[facets]
     part = covered(scene.domain, load, edges)
     acts = part[:, 1] > part[:, 0]
@@ -121,10 +120,10 @@ def _covered(
 
 
 def delayed(row: np.ndarray, unit: np.ndarray, history: LoadHistory, late: np.ndarray) -> Source:
-    """Return forces on points with a common history, each with its own delay.
+    """Return forces at points with a common history, each with its own delay.
 
-    row : of each point [m]. unit : the resultants of a unit there [m, d + d^2]. history : with a
-    mean over each step. late : s [m].
+    row : of each point [m]. unit : resultants for a history of 1 [m, d + d^2]. late : delays [m],
+    s. Forces are means over a step.
     """
 
     def acting(steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
@@ -149,11 +148,11 @@ def incoming(
     rows: np.ndarray,
     time: Clock,
 ) -> list[Source]:
-    """Return what a field does at the points of quiet sides.
+    """Return the forces of an incident field at the points of quiet sides.
 
-    period : the shortest of its waves, s; None: none. impedance : of the dashpots there [m, d, d],
-    Pa s/m. rows : held blocks [h]. Plane waves are known at every step; another field is asked
-    once, at the samples of a run or more.
+    period : shortest period of its waves, s, or None. impedance : of the dashpots [m, d, d],
+    Pa s/m. rows : held blocks [h]. Plane waves are evaluated at every step; another field once, at
+    the sampling interval or more finely.
     """
     row = np.searchsorted(rows, points.block)
 

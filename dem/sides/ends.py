@@ -1,9 +1,9 @@
-"""The ends of a pillar, as what acts on its first and its last block.
+"""Loads, dashpots and springs at the ends of a pillar.
 
-A quiet end is the dashpots Z of the rock beyond, spread over the end face. A matched end has the
-same dashpots behind the half of a joint's springs that the end face leaves, `joints.ends`. A fixed
-end is a wall, a contact of `blocks.pillar`; the dashpots of the half block before it are here, for
-they see the mean velocity of both half steps like all that are beyond the pillar.
+A quiet end has dashpots Z of the rock beyond, spread over the end face. A matched end has the same
+dashpots behind half of a joint's springs (`joints.ends`). A fixed end is a wall, a contact of
+`blocks.pillar`; the dashpots of the half block before it are here, since they act on the mean
+velocity of both half steps, as all boundary dashpots do.
 """
 
 import numpy as np
@@ -29,9 +29,9 @@ from jointwave.joints.normal import gap_under
 def surroundings_of(
     scene: Scene, cut: Blocks, share: float, rotations: int, stress: np.ndarray | None
 ) -> Surroundings:
-    """Return what acts on the blocks of a pillar.
+    """Return the surroundings of a pillar.
 
-    share : of the faces' second moments that the points of joints have. rotations : of a block.
+    share : second moments of contact points over those of the face. rotations : of a block.
     stress : the prestress [d, d], Pa.
     """
     p, dim, shaken = calibrate(scene), cut.body.dim, scene.shakes_base
@@ -59,7 +59,7 @@ def surroundings_of(
 
 
 def _dashpots(kind: str, rock: JointedRock) -> list[float]:
-    """Return the impedances of the dashpots on a block's end, along it and across, Pa s/m."""
+    """Return the axial and transverse impedance of an end's dashpots, Pa s/m."""
     eta = rock.time_constant or 0.0
     if kind == "fixed":
         return [eta * rock.wall_stiffness, eta * rock.wall_shear_stiffness]
@@ -98,7 +98,7 @@ def _push(scene: Scene, cut: Blocks) -> Pattern:
     load, dim, face = scene.load, cut.body.dim, facets_on(cut, SIDES, SIDES[:1])[0]
     history, direction, area = block_load(scene), np.array(load.direction), scene.pillar.area
     arm = cut.boundary.centroid[face] - cut.centroid[0]
-    if load.arm is not None:  # a pair of forces
+    if load.arm is not None:  # a couple
         across = np.eye(3)[2 if abs(direction[2]) < LEAN else 0]
         across = across - (across @ direction) * direction
         across /= np.linalg.norm(across)
@@ -112,10 +112,10 @@ def _push(scene: Scene, cut: Blocks) -> Pattern:
 
 
 def under_weight(scene: Scene, p: Properties, weight: np.ndarray) -> np.ndarray | None:
-    """Return the displacement [N] along a pillar of blocks between elastic joints under the weight
-    of each [N], N, which the ends bear that are held; None where none is.
+    """Return the axial displacement [N], m, of blocks between elastic joints under their weights
+    [N], N; None without weight or a held end.
 
-    The forces are those of equilibrium, between two held ends as the springs share them.
+    The axial forces follow from equilibrium, and with two held ends from the springs.
     """
     kinds = scene.ends.start, scene.ends.end
     held = [kind == "fixed" or bears for kind, bears in zip(kinds, scene.bears, strict=True)]

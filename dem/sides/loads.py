@@ -12,14 +12,14 @@ from jointwave.cases.sampling import Clock
 from jointwave.dem.kernel.composition import instants
 from jointwave.dem.sides.boundaries import points_on, resultants, summed
 
-#: Samples times held blocks whose forces are there at once.
+#: Samples times held blocks whose forces are in memory at a time.
 AT_ONCE = 100_000
 IN_A_PERIOD = 20  # samples of the forces per period of their highest frequency
 
 
 class Pattern(NamedTuple):
-    """A force pattern: forces [m, d], N, at arms [m, d] on blocks [m], ascending, times a history;
-    None: constant."""
+    """A force pattern: forces [m, d], N, at arms [m, d], m, on blocks [m], ascending, times a
+    history; None: constant."""
 
     block: np.ndarray
     arm: np.ndarray
@@ -27,17 +27,17 @@ class Pattern(NamedTuple):
     history: LoadHistory | None
 
 
-#: Forces that are no pattern times a history, of (steps, dt, rows, onto): what acts in equally
-#: spaced steps [n] of dt, s, on some of the rows [k], ascending, as a matrix [a, d + d^2] makes it
-#: of resultants: [n, k, a].
+#: A function of (steps, dt, rows, onto) for forces that are no pattern times a history: returns
+#: onto [a, d + d^2] times the resultants in equally spaced steps [n] of dt, s, on held blocks
+#: `rows` [k], ascending: [n, k, a].
 Source = Callable[[np.ndarray, float, np.ndarray, np.ndarray], np.ndarray]
 
 
 class Loads:
-    """All forces on held blocks, step by step; resultants are those of `dem.sides.boundaries`.
+    """All forces on held blocks, step by step; resultants as in `dem.sides.boundaries`.
 
-    rows : int array [h], the block of each row, ascending. onto : `boundaries.freedoms`. composed :
-    whether they act by their values at the instants of `composition`; else by means over steps.
+    rows : the block of each row [h], ascending. onto : `boundaries.freedoms`. composed : whether
+    forces are values at the instants of `composition`, not means over steps.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Loads:
             shape[:] = summed(resultants(one.arm, one.force), row, len(rows))
 
     def add_steady(self, shape: np.ndarray) -> None:
-        """Add resultants [h, d + d^2] that act all the time."""
+        """Add constant resultants [h, d + d^2]."""
         self.histories.append(None)
         self.shapes = np.concatenate([self.shapes, shape[None]])
 
@@ -69,8 +69,8 @@ class Loads:
         return self.shapes[own].sum(axis=0) @ self.onto.T
 
     def resultants(self, steps: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return what acts in equally spaced steps [n] on some rows [k], ascending:
-        [n, k, d + d^2]. Of a history it is the mean over each step, or its value if composed."""
+        """Return resultants in equally spaced steps [n] on held blocks `rows` [k], ascending
+        [n, k, d + d^2]: means over each step, or values if composed."""
         return self._acting(steps, rows, np.eye(self.onto.shape[1]))
 
     def drive(self, steps: np.ndarray) -> np.ndarray:
@@ -94,12 +94,11 @@ class Loads:
         return found
 
     def impulse(self, inertia: np.ndarray, frequency: float | None) -> float:
-        """Return a bound on what all of it adds to sqrt(2 E), sqrt(J), sample by sample, or more
-        often where samples are too rare to see it.
+        """Return a bound on the increase of sqrt(2 E) by all forces, sqrt(J), from their values at
+        samples, or more often if samples are too far apart for the highest frequency.
 
-        inertia : of each row's freedoms [h, F]. frequency : the highest that acts, Hz; None: none.
-        What is steady acts from the start, and is in equilibrium with the stress that it stands
-        for.
+        inertia : of each row's freedoms [h, F]. frequency : highest of the forces, Hz, or None.
+        Constant forces do not count: they balance the prestress.
         """
         time = self.time
         periods = time.dt * time.stride * (frequency or 0.0)
@@ -116,8 +115,8 @@ class Loads:
 def reactions(
     blocks: Blocks, facets: np.ndarray, stress: np.ndarray, along: bool = False
 ) -> Pattern:
-    """Return the forces by which the rock beyond boundary facets, int array, goes on to bear a
-    stress [d, d], Pa, compression positive; along : those along the facets alone."""
+    """Return the forces of the rock beyond boundary facets (indices) that balance a stress [d, d],
+    Pa, compression positive; along : only the components along the facets."""
     points = points_on(blocks, facets)
     traction = -points.normal @ stress
     if along:

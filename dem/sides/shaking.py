@@ -1,4 +1,4 @@
-"""The motion of walls that move as a base, in any dimension."""
+"""The motion of walls that are moving bases, in any dimension."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,12 +9,12 @@ from jointwave.cases.loads import history_of
 from jointwave.cases.schema.pulse import Pulse
 from jointwave.dem.kernel.model import State
 
-#: Of (steps): the velocity of every wall in each [n, walls, d], m/s.
+#: A function of steps [n] that returns the velocity of every wall in each [n, walls, d], m/s.
 Shaking = Callable[[np.ndarray], np.ndarray]
 
 
 class Base(NamedTuple):
-    """A base that moves: the wall's name, the pulse that it moves by, and its direction [d]."""
+    """A moving base: the wall's name, the pulse of its motion, and its direction [d]."""
 
     wall: str
     pulse: Pulse
@@ -52,8 +52,9 @@ def variation(velocity: np.ndarray) -> float:
 
 
 def motion_of_walls(state: State, shake: np.ndarray, dt: float) -> np.ndarray:
-    """Return displacement and velocity of walls that move as `shake` says [steps + 1, 2,
-    freedoms (1 + walls)], before each step and after the last, none at first."""
+    """Return displacement and velocity of walls before each step and after the last
+    [steps + 1, 2, freedoms (1 + walls)], from their velocities `shake`; before the first wall
+    stands a block of zeros."""
     (steps, walls, dim), f = shake.shape, state.u.shape[1]
     found = np.zeros((steps + 1, 2, 1 + walls, f))
     found[0, :, 1:] = state.u[-walls:], state.v[-walls:]

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class EndSpring(NamedTuple):
-    """Springs between a block and the dashpots of its end: the half of a joint.
+    """Springs, half of a joint, between a block and the dashpots of its end.
 
-    lever : makes the block's motion that of the end face [F, F]. stiffness, dashpot : of the face
-    against its motion [F], N/m and N s/m, N m and N m s. eta : s.
+    lever : matrix from the block's motion to that of the end face [F, F]. stiffness, dashpot : of
+    the face [F], N/m and N s/m, N m and N m s. eta : s.
     """
 
     block: int
@@ -42,14 +42,13 @@ class EndSpring(NamedTuple):
 
 
 class Surroundings(NamedTuple):
-    """What acts on blocks from outside.
+    """Forces, dashpots and moving bases on the boundary of blocks.
 
-    points : where dashpots act, sides that waves pass among them; before a base that moves those
-    of the first block. impedance : there [m, d, d], Pa s/m. borne : what bears the weight there,
-    likewise, of 1 or 0. patterns : forces. opened : by which walls of openings hold their blocks
-    before these are excavated; None without. bases : walls that move. springs : before dashpots.
-    waves : of a field, the blocks of the rows and the clock, what the field does to them; None
-    where no wave enters.
+    points : of dashpots, those at a moving base included. impedance : at the points [m, d, d],
+    Pa s/m. borne : directions in which the points bear the weight [m, d, d], of 1 or 0. patterns :
+    forces. bases : moving walls. springs : between blocks and dashpots. opened : forces of the
+    walls of openings before excavation; None without. waves : function of (field, held blocks,
+    clock) that returns the forces of incident waves; None without waves.
     """
 
     points: BoundaryPoints
@@ -63,15 +62,14 @@ class Surroundings(NamedTuple):
 
     @property
     def rows(self) -> np.ndarray:
-        """The blocks that something acts on, ascending."""
+        """The held blocks, ascending."""
         own = [self.points.block, *(one.block for one in self.patterns)]
         return np.unique(np.concatenate(own))
 
 
 def before_base(push: np.ndarray, moving: Shaking) -> Source:
-    """Return what the dashpots before a moving base push the first block with, by its mean velocity
-    over both half steps; push : resultants over the base's velocity [d + d^2, d], N s/m.
-    """
+    """Return the forces on the first block of dashpots driven by a moving base, at the base's mean
+    velocity over both half steps; push : resultants per velocity [d + d^2, d], N s/m."""
 
     def acting(steps: np.ndarray, dt: float, rows: np.ndarray, onto: np.ndarray) -> np.ndarray:
         found = np.zeros((len(steps), len(rows), len(onto)))
