@@ -1,1 +1,1 @@
-"""Calibration: stiffness, damping and strength of every joint, and the blocks' inertia."""
+"""Calibration: stiffness, damping and strength of every joint, and the inertia of blocks."""

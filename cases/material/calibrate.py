@@ -1,12 +1,12 @@
-"""Calibration: the properties of a pillar, shared by engines and exact solutions.
+"""Calibration of a pillar: properties shared by engines and exact solutions.
 
-A block of thickness S has half of its compliance on either side of its centre: S / (2 E) of intact
-rock and half a joint, 1 / (2 K_n), together S / (2 E_eq). A joint between two segments is half a
-joint of each, so that rigid blocks, jointed rock and the homogenised bar have one compliance, and a
-matched end the other half. Two Kelvin-Voigt elements in series are one for slow motion, with the
-time constants weighted by the compliances.
+Half of the compliance of a block of thickness S lies on each side of its centre: S / (2 E) of
+intact rock and half a joint, 1 / (2 K_n), together S / (2 E_eq). A joint between two segments is
+half a joint of each; a matched end supplies the half joint that the end block lacks. Rigid blocks,
+jointed rock and the homogenised bar thus have one compliance. Two Kelvin-Voigt elements in series
+act as one in slow motion, with time constants weighted by compliance.
 
-Joints at random have their own thickness of block before and behind, and their own compliance.
+Random joints have the thicknesses of their neighbouring blocks, and their own compliance.
 """
 
 from math import inf
@@ -30,15 +30,13 @@ from jointwave.cases.schema.scene import Scene
 
 __all__ = ["Properties", "calibrate"]
 
-#: The scene that was calibrated last, while it lives, and its properties: a run asks several times.
+#: Cache of the last calibrated scene, while it lives: a run needs its properties several times.
 _last: list[tuple[ref[Scene], Properties]] = []
 
 
 def calibrate(scene: Scene) -> Properties:
-    """Return the properties of a scene: every joint's stiffness, damping, tension and strength.
-
-    Nobody changes its arrays: it may be given again.
-    """
+    """Return the properties of a scene, with every joint's stiffness, damping, tension and
+    strength. They are cached: do not change their arrays."""
     for known, found in _last:
         if known() is scene:
             return found
@@ -48,7 +46,7 @@ def calibrate(scene: Scene) -> Properties:
 
 
 def _properties(scene: Scene) -> Properties:
-    """Return the properties of a scene by its blocks and the rock of each segment."""
+    """Return the properties of a scene from its blocks and the rock of each segment."""
     blocks = blocks_of_pillar(scene)
     law, segment = blocks.contacts.joint_set, blocks.body.region
     y = np.concatenate([[0.0], blocks.contacts.centroid[:, 0], [scene.pillar.length]])
@@ -71,8 +69,8 @@ def _properties(scene: Scene) -> Properties:
 
 
 def _at_ends(scene: Scene, rock: JointedRock) -> tuple[float, float]:
-    """Return the stress that closes joints at the start and the end before any load, Pa, with the
-    weight where an end that absorbs waves bears it alone."""
+    """Return the stress that closes joints at the start and the end before any load, Pa, including
+    the weight if an absorbing end alone bears it."""
     gravity, weight = scene.gravity, 0.0
     if gravity is not None and gravity.static and "fixed" not in dict(scene.ends).values():
         along = abs(gravity.direction[1])
@@ -88,7 +86,7 @@ def _springs(
     thickness: np.ndarray,
     soft: np.ndarray,
 ) -> dict[str, Any]:
-    """Return stiffness and time constants of each joint, ordinary ones and soft layers."""
+    """Return stiffness and time constants of each joint, soft layers included."""
 
     def of_blocks(*names: str, absent: float = 0.0) -> np.ndarray:
         values = [[getattr(one, name) for one in rocks] for name in names]
@@ -139,8 +137,8 @@ def _springs(
 
 
 def _scattered(scene: Scene, segment: np.ndarray) -> np.ndarray:
-    """Return the compliance of each joint over its mean [N - 1]: those of a segment, with the one
-    behind it, are a stream of random numbers."""
+    """Return each joint's compliance over the mean [N - 1]; each segment, with the joint after it,
+    has its own random stream."""
     if scene.scatter is None or not scene.scatter.compliance:
         return np.ones(len(segment) - 1)
     counts = np.bincount(segment)
@@ -149,17 +147,17 @@ def _scattered(scene: Scene, segment: np.ndarray) -> np.ndarray:
 
 
 def _of_pairs(half: np.ndarray) -> np.ndarray:
-    """Return the sum of two neighbours [..., N - 1]."""
+    """Return the sums of neighbouring values [..., N - 1]."""
     return half[..., 1:] + half[..., :-1]
 
 
 def _joined(one: np.ndarray, eta: np.ndarray, other: np.ndarray, beta: np.ndarray) -> np.ndarray:
-    """Return the time constant of two compliances in series, each with its own, s."""
+    """Return the time constant of two Kelvin-Voigt compliances in series, s."""
     whole = one + other
     viscous = one * eta + other * beta
     return np.divide(viscous, whole, out=np.zeros_like(whole), where=whole > 0)
 
 
 def _weighted(compliance: np.ndarray, eta: np.ndarray) -> np.ndarray:
-    """Return the time constant of each pair of neighbours in series, 0 of rigid ones [N - 1], s."""
+    """Return the time constant of each pair of neighbours in series [N - 1], s; 0 if rigid."""
     return _joined(compliance[:-1], eta[:-1], compliance[1:], eta[1:])

@@ -1,9 +1,8 @@
-"""Joints that stiffen as they close: their constants from roughness and strength, and their
-largest closure in a scene.
+"""Joints that stiffen as they close: constants from roughness and strength, and stress in a scene.
 
 Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20, 249-268 (1983), and Barton, Bandis &
-Bakhtar, 22, 121-140 (1985), measured joints of JRC 5 to 15 and JCS 22 to 182 MPa. In their units,
-MPa and mm, of the third cycle of loading, to which joints in the ground are nearest:
+Bakhtar, 22, 121-140 (1985), measured joints of JRC 5 to 15 and JCS 22 to 182 MPa. In MPa and mm,
+for the third loading cycle, which is closest to joints in situ:
 
     a = JRC / 5 (0.2 sigma_c / JCS - 0.1),   k_ni = -7.15 + 1.75 JRC + 0.02 JCS / a,
     d_m = -0.1032 - 0.0074 JRC + 1.135 (JCS / a)^-0.251.
@@ -20,7 +19,7 @@ from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
 
-SAMPLES = 10_001  # of a pulse, for its peak, in addition to its breaks
+SAMPLES = 10_001  # of a pulse, besides its breaks, to find its peak
 
 
 class Closure(NamedTuple):
@@ -32,7 +31,7 @@ class Closure(NamedTuple):
 
 
 def bandis_closure(roughness: float, wall_strength: float, rock_strength: float) -> Closure:
-    """Return the closure of a joint of JRC `roughness`, JCS `wall_strength` (Pa), in rock of
+    """Return the closure of a joint of JRC `roughness` and JCS `wall_strength` (Pa), in rock of
     uniaxial compressive strength sigma_c `rock_strength` (Pa).
 
     Raises ValueError outside measured ranges: JRC 5 to 15, JCS 22 to 182 MPa and at most sigma_c,
@@ -53,19 +52,18 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
 
 
 def stress_in_reach(scene: AnyScene) -> float:
-    """Return the normal stress (Pa) for which the critical step accounts in joint closure.
+    """Return the normal stress (Pa) up to which the critical step accounts for joint closure.
 
-    The initial stress, plus twice what is added, as at a rigid wall, or in rock with openings three
-    times, as at the wall of a circular one (Kirsch). Focusing waves can exceed it: it is not a
-    strict bound.
+    The initial stress plus twice the added one, as at a rigid wall, or three times in rock with
+    openings, as at the wall of a circular one (Kirsch). Focusing waves can exceed it.
     """
     (initial, added), opened = stresses(scene), not scene.is_column and scene.domain.holes
     return initial + (3 if opened else 2) * added
 
 
 def stresses(scene: AnyScene) -> tuple[float, float]:
-    """Return the largest initial stress, Pa, and the peaks of all loads and waves, and a sudden
-    weight, together."""
+    """Return the largest initial stress, and the sum of the peaks of all loads, waves and sudden
+    weight, Pa."""
     initial = 0.0 if scene.prestress is None else scene.prestress.largest(scene.excavated)
     added = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
     if scene.gravity is None:
@@ -76,15 +74,15 @@ def stresses(scene: AnyScene) -> tuple[float, float]:
 
 
 def _peak(pulse: Pulse, duration: float) -> float:
-    """Return the largest magnitude of a pulse, of an acceleration that of its integral."""
+    """Return the largest magnitude of a pulse; for an acceleration, of its integral."""
     history = velocity_of(pulse, pulse.amplitude)
     times = np.linspace(0.0, min(duration, history.end) or duration, SAMPLES)
     return float(np.abs(history.value(np.append(times, history.breaks))).max())
 
 
 def _stress_of(pulse: Any, scene: AnyScene) -> float:
-    """Return the stress in rock by a pulse of one: itself, that of a velocity by the impedance, of
-    a force over the least spacing of joints; on a pillar's start at the edges of the section."""
+    """Return the stress in rock per unit of a pulse: for a velocity the impedance, for a force one
+    over the least joint spacing; at a pillar's start, at the edges of the section."""
     if scene.is_column:
         if pulse.is_motion:
             p = calibrate(scene).at_start

@@ -1,17 +1,17 @@
-"""Rock of a constant quality factor Q by relaxation mechanisms: a generalised Zener body.
+"""Rock of constant quality factor Q by relaxation mechanisms (generalised Zener body).
 
-Springs in parallel, all but one of them in series with a dashpot of its own, make the modulus
+Springs in parallel, all but one in series with a dashpot, give the modulus
 
     M(s) = M_u (1 - sum_l y_l omega_l / (s + omega_l))
 
-of relaxation frequencies omega_l and shares y_l > 0 (Emmerich & Korn, Geophysics 52, 1987; Blanch,
-Robertsson & Symes, Geophysics 60, 1995). 1/Q = Im M / Re M at s = i omega is the same for every
-omega of a band but for some per cent where the y_l, by non-negative least squares, solve
+with relaxation frequencies omega_l and shares y_l > 0 (Emmerich & Korn, Geophysics 52, 1987;
+Blanch, Robertsson & Symes, Geophysics 60, 1995). 1/Q = Im M / Re M at s = i omega is constant in a
+band, within a few per cent, if the y_l solve, by non-negative least squares,
 
     sum_l y_l (omega omega_l + omega_l^2 / Q) / (omega^2 + omega_l^2) = 1/Q .
 
-The modulus that the scene gives is that of the phase speed at the reference frequency,
-c = sqrt(M / rho): M_u is larger by Re(sqrt(M_u / M))^2.
+The scene's modulus gives the phase speed c = sqrt(M / rho) at the reference frequency: M_u is
+larger by Re(sqrt(M_u / M))^2.
 """
 
 from functools import lru_cache
@@ -23,14 +23,14 @@ import numpy as np
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 
-SPACING = 0.85  # decades between relaxation frequencies, at most: Q is within 4 % from Q = 5 on
-BEYOND = 0.1  # decades that they go beyond the band
-POINTS = 50  # a decade, at which Q is fitted
+SPACING = 0.85  # most decades between relaxation frequencies: Q is within 4 % from Q = 5 on
+BEYOND = 0.1  # decades of relaxation frequencies outside the band at each end
+POINTS = 50  # per decade, at which Q is fitted
 
 
 class Mechanisms(NamedTuple):
-    """Relaxation frequencies omega_l [L], rad/s; shares y_l [L] of the unrelaxed modulus, of which
-    the relaxed one has 1 - sum(y_l); the unrelaxed modulus over the one that is given."""
+    """Relaxation frequencies omega_l [L], rad/s; shares y_l [L] of the unrelaxed modulus; the
+    unrelaxed modulus over the given one."""
 
     frequency: np.ndarray
     share: np.ndarray
@@ -42,13 +42,13 @@ class Mechanisms(NamedTuple):
         return 1 - float(self.share.sum())
 
     def modulus(self, s: np.ndarray) -> np.ndarray:
-        """Return M at Laplace variables s (1/s) over the modulus that is given."""
+        """Return M at Laplace variables s (1/s) over the given modulus."""
         parts = self.share * self.frequency / (np.asarray(s)[..., None] + self.frequency)
         return self.unrelaxed * (1 - parts.sum(axis=-1))
 
 
 def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
-    """Return the mechanisms of a scene's intact rock, or of a pillar's rock mass where `model` is
+    """Return the mechanisms of a scene's intact rock, or of a pillar's rock mass for the model
     "equivalent"; None without a quality factor."""
     rock = scene.rock
     if rock.quality_factor is None:
@@ -63,8 +63,8 @@ def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
 
 @lru_cache
 def fitted(quality: float, reference: float, low: float, high: float) -> Mechanisms:
-    """Return the mechanisms of a quality factor from `low` to `high` (Hz), the phase speed being
-    that of the given modulus at `reference` (Hz)."""
+    """Return the mechanisms of a quality factor from `low` to `high` (Hz); the given modulus sets
+    the phase speed at `reference` (Hz)."""
     from scipy.optimize import nnls  # slow to import
 
     first, last = log10(low) - BEYOND, log10(high) + BEYOND
@@ -78,15 +78,15 @@ def fitted(quality: float, reference: float, low: float, high: float) -> Mechani
 
 
 def in_series(rock: Mechanisms, ratio: float, eta: float) -> Mechanisms:
-    """Return the mechanisms of intact rock in series with joints, of the modulus of both together.
+    """Return the mechanisms of intact rock and joints in series, relative to their common modulus.
 
-    ratio : compliance of the joints over that of the rock, of the given moduli. eta : of their
-    dashpots, s.
+    ratio : compliance of the joints over that of the rock, from given moduli. eta : time constant
+    of the joints' dashpots, s.
 
-    Under a strain e rock has the stress E_u (e - j - sum_l y_l z_l), z_l' = omega_l (e - j - z_l),
-    and the joints' strain j the same, k (j + eta j'). In the variables z_l sqrt(y_l / omega_l) and
-    j sqrt(k eta / E_u) - where eta = 0, with j eliminated - these are x' = -A x + B e of a
-    symmetric A, with the stress E_u (d e - B x): the eigenvalues of A are relaxation frequencies.
+    Under a strain e the rock's stress is E_u (e - j - sum_l y_l z_l), z_l' = omega_l (e - j - z_l),
+    and equals the joints' stress k (j + eta j') at their strain j. In the variables z_l sqrt(y_l /
+    omega_l) and j sqrt(k eta / E_u) (for eta = 0, j is eliminated) this is x' = -A x + B e with a
+    symmetric A, and the stress E_u (d e - B x): the eigenvalues of A are relaxation frequencies.
     """
     frequency, own = rock.frequency, np.sqrt(rock.share * rock.frequency)
     over = rock.unrelaxed * ratio  # E_u / k

@@ -1,22 +1,22 @@
-"""Contact points of the faces between rigid blocks, and the share of the face that each stands for.
+"""Contact points on the faces of rigid blocks, and each point's share of the face.
 
-vertices : the corners and the centroid, by the moments of the face. They carry all of its bending
-stiffness, and where it opens they bear at its edges. midpoint : the centres of n equal parts of an
-edge, or n x n of a rectangle. gauss : the Gauss-Legendre points.
+vertices : corners and centroid, weighted by the moments of the face. They carry its whole bending
+stiffness, and bear at its edges where it opens. midpoint : centres of n equal parts of an edge, or
+n x n of a rectangle. gauss : Gauss-Legendre points.
 """
 
 import numpy as np
 
-#: Rule and number of points of a cut through intact rock.
+#: Rule and number of points for a cut through intact rock.
 CUT = ("gauss", 2)
-#: Of a face's second moments: below it what its corners leave lies in the centroid.
+#: Residual second moment, over the face's, below which all of it is placed at the centroid.
 MERGED = 1e-10
 
 
 def points_of(rule: str, count: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Return places and weights of a rule on an edge from 0 to 1; weights add up to 1.
+    """Return points and weights of a rule on an edge from 0 to 1; the weights add up to 1.
 
-    count : of points, 2 where absent; vertices are Simpson's three.
+    count : of points, 2 where absent; "vertices" always has Simpson's three.
     """
     if rule == "vertices":
         return np.array([0.0, 0.5, 1.0]), np.array([1.0, 4.0, 1.0]) / 6
@@ -28,32 +28,31 @@ def points_of(rule: str, count: int | None = None) -> tuple[np.ndarray, np.ndarr
 
 
 def lever(rule: str, count: int | None = None) -> float:
-    """Return how far the outermost points are from the centre of an edge, over half its length:
-    1 - 1/n of n midpoints, 1 of vertices. They bear all that a face bears when it opens as far as
-    it can."""
+    """Return the distance of the outermost points from an edge's centre over half its length: 1 -
+    1/n for n midpoints, 1 for vertices. They bear the whole load when the face opens."""
     return float(2 * points_of(rule, count)[0].max() - 1)
 
 
 def bending(rule: str, count: int | None = None) -> float:
-    """Return the part of a face's second moments that its points have: 1 - 1/n^2 of midpoints, all
-    of vertices and, from n = 2, of Gauss points."""
+    """Return the share of a face's second moments that its points carry: 1 - 1/n^2 for midpoints, 1
+    for vertices and, from n = 2, Gauss points."""
     x, weight = points_of(rule, count)
     return float(12 * weight @ (x - 0.5) ** 2)
 
 
 def vertex_points(corners: np.ndarray, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return places [n, p, t], m, from the centroid, and shares [n, p] of the points of convex
-    faces: their corners, then the centroid or two points about it.
+    """Return points [n, p, t], m, relative to the centroid, and shares [n, p] of convex faces:
+    their corners, then the centroid or two points around it.
 
-    corners : around each face, from its centroid [n, k, t], m; the last may be repeated. spread :
-    second moments over the area [n, t, t], m2. t = 1 of edges, 2 of polygons.
+    corners : around each face, relative to its centroid [n, k, t], m; the last may be repeated.
+    spread : second moments over the area [n, t, t], m2. t = 1 for edges, 2 for polygons.
 
-    A fan about the centroid has a triangle (edge: half) at each corner; corners whose weights w are
-    in proportion to the area beside them have no first moment. Of b w, b is the largest for which
-    their second moments b V leave none negative of the face's S. One of what is left, S - b V, is
-    then zero, and two points in the other's direction have it. On triangles b is 1/4 and on
-    parallelograms and edges 1/3, and nothing is left; elsewhere b is between 1/6 and 1/2, and these
-    points lie within the face.
+    A fan of triangles about the centroid (for edges: halves) gives corner weights w proportional to
+    adjacent area, which have no first moment. With weights b w, b is the largest factor for which
+    the corners' second moments b V nowhere exceed the face's S. The residual S - b V then has one
+    zero eigenvalue, and two points along the other eigenvector carry the rest. b is 1/4 for
+    triangles and 1/3 for parallelograms and edges, without residual; otherwise it is between 1/6
+    and 1/2, and the two points lie within the face.
     """
     weight = np.abs(corners).sum(axis=2)
     if corners.shape[2] == 2:

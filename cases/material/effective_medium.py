@@ -1,28 +1,27 @@
 """Effective medium of joint sets: long waves in rock with any number of sets of parallel joints.
 
-Each set of unit normal n adds its mean jump to the strain (Schoenberg & Sayers, Geophysics 60,
+Each set with unit normal n adds its mean jump to the strain (Schoenberg & Sayers, Geophysics 60,
 1995; Sayers & Kachanov, JGR 100, 1995):
 
     S_ijkl = S0_ijkl + sum over sets of (alpha_ik n_j n_l + alpha_jk n_i n_l + alpha_il n_j n_k
              + alpha_jl n_i n_k) / 4,   alpha = Z_T (I - n n) + Z_N n n
     Z_N = 1/(spacing K_n),   Z_T = 1/(spacing K_s)
 
-Waves by Christoffel's equation, C_ijkl n_j n_l g_k = rho c^2 g_i. The normals have two components
-in plane strain and three in space; normals in the plane give the same plane either way. Holds
-where waves are long against the spacings, and for joints that do not stop one another.
+Wave speeds follow from Christoffel's equation, C_ijkl n_j n_l g_k = rho c^2 g_i. Normals have two
+components in plane strain and three in space; normals in a plane give the same result either way.
+Valid for waves long against the spacings, and joints that do not end at one another.
 
-Voigt's form in the order 11, 22, 12 or 11, 22, 33, 23, 13, 12: C takes engineering shear strains,
+Voigt's form has the order 11, 22, 12 or 11, 22, 33, 23, 13, 12: C maps engineering shear strains,
 gamma_12 = 2 e_12, to stresses.
 
-Rigid blocks have no S0 of their own: all compliance is that of their joints, which come nearest to
-a rock mass where they
+Rigid blocks have no compliance S0: their joints carry all of it. The joints nearest to a rock mass
 
     minimise || sum over sets of (Z_N opening(n) + Z_T sliding(n)) - S ||,   Z_N, Z_T >= 0
 
 in the norm of the tensor S_ijkl, by non-negative least squares (Lawson & Hanson, Solving Least
 Squares Problems, 1974). Of equally good fits the one of least norm is taken: orthogonal sets share
-their shear compliance equally. What is left over is known before a run; of two orthogonal sets in
-isotropic rock it is C_12, their lack of a Poisson effect.
+their shear compliance equally. The residual is known before a run; for two orthogonal sets in
+isotropic rock it is C_12, their missing Poisson effect.
 """
 
 from collections.abc import Iterable
@@ -36,17 +35,17 @@ from jointwave.cases.partition.joints import within
 from jointwave.cases.schema import joint as schema
 from jointwave.cases.schema.rock_mass import RockMass
 
-DIRECTIONS = 36  # in which speeds are looked at
-RIGID = 1e-9  # of the largest compliance: what bodies without any have
-LEAST = 1e-15  # 1/Pa, in place of the largest where there is none
-OF_NORM = 1e-7  # weight of the fit's own norm
+DIRECTIONS = 36  # in which the least speed is searched, over half a circle
+RIGID = 1e-9  # compliance of rigid bodies over the largest one of the joints
+LEAST = 1e-15  # 1/Pa, stands for the largest compliance if there is none
+OF_NORM = 1e-7  # weight of the solution's norm in the fit
 PRECISE = 1e-15  # accuracy of least squares relative to the largest number: round-off
 PAIRS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
 
 @dataclass(frozen=True)
 class JointSet:
-    """A set of parallel joints: unit normal [2] or [3], compliances Z_N and Z_T (1/Pa)."""
+    """A set of parallel joints: unit normal [d], compliances Z_N and Z_T (1/Pa)."""
 
     normal: np.ndarray
     normal_compliance: float = 0.0
@@ -56,7 +55,7 @@ class JointSet:
 def compliant(sets: Iterable[schema.JointSet], stress: np.ndarray | None = None) -> list[JointSet]:
     """Return the sets of a scene that have a spacing; a single joint is not a medium.
 
-    stress : that has closed joints which stiffen, compression positive [d, d], Pa.
+    stress : that closes the joints, compression positive [d, d], Pa.
     """
     found = []
     for one in sets:
@@ -68,8 +67,8 @@ def compliant(sets: Iterable[schema.JointSet], stress: np.ndarray | None = None)
 
 
 def closed_stiffness(one: schema.JointSet, stress: np.ndarray | None) -> float:
-    """Return the normal stiffness of joints under a stress, compression positive [d, d], Pa:
-    k (1 + sigma / k d_m)^2, Pa/m, of those that stiffen as they close."""
+    """Return the normal stiffness of joints under a stress, compression positive [d, d], Pa: k (1 +
+    sigma / k d_m)^2, Pa/m, for joints that stiffen as they close."""
     K, n = one.normal_stiffness or 0.0, one.normal
     if K and one.maximum_closure and stress is not None:
         K *= (1 + max(n @ stress @ n, 0.0) / (K * one.maximum_closure)) ** 2
@@ -77,12 +76,12 @@ def closed_stiffness(one: schema.JointSet, stress: np.ndarray | None) -> float:
 
 
 def slowest(scene: RockMass) -> float:
-    """Return the least speed (m/s) of long waves through joints that have a spacing, in directions
-    over half of all."""
+    """Return the least speed (m/s) of long waves through joint sets with a spacing, over directions
+    on half a circle or sphere."""
     dim = scene.domain.dimension
     level = np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False)
     directions = np.stack([np.cos(level), np.sin(level)], axis=-1)
-    if dim == 3:  # rows of a level
+    if dim == 3:  # circles of equal height
         level, turned = np.meshgrid(level, level)
         across = np.sin(level) * np.cos(turned), np.sin(level) * np.sin(turned)
         directions = np.stack([*across, np.cos(level)], axis=-1).reshape(-1, 3)
@@ -94,8 +93,8 @@ def slowest(scene: RockMass) -> float:
 
 
 def added(one: JointSet) -> np.ndarray:
-    """Return what one set adds to the compliance in Kelvin's form (1/Pa), a tensor's orthogonal
-    components: [3, 3] or [6, 6]."""
+    """Return the compliance of one set in Kelvin's form (orthogonal tensor components), [3, 3] or
+    [6, 6], 1/Pa."""
     n = one.normal
     return one.normal_compliance * opening(n) + one.shear_compliance * sliding(n)
 
@@ -128,15 +127,15 @@ def stiffness(rock: ElasticRock, sets: list[JointSet], dimension: int = 2) -> np
 
 
 def with_joints(C: np.ndarray, sets: list[JointSet]) -> np.ndarray:
-    """Return C of the effective medium of joint sets in rock of this C, both Voigt's, Pa."""
+    """Return C of joint sets in rock with stiffness C, both in Voigt's form, Pa."""
     scale = _scale({3: 2, 6: 3}[len(C)])
     kelvin = np.outer(scale, scale)
     return np.linalg.inv(sum(map(added, sets), start=np.linalg.inv(C * kelvin))) / kelvin
 
 
 def joints_alone(sets: list[JointSet], dimension: int = 2) -> np.ndarray:
-    """Return C of rigid bodies between joints in Voigt's form, Pa; enormous for strains that none
-    of the sets takes on."""
+    """Return C of rigid bodies between joints in Voigt's form, Pa; very large for strains to which
+    no set yields."""
     scale = _scale(dimension)
     S = sum(map(added, sets), start=np.zeros((len(scale), len(scale))))
     S = S + RIGID * (np.abs(S).max() or LEAST) * np.eye(len(scale))
@@ -159,14 +158,14 @@ def speeds(C: np.ndarray, density: float, directions: np.ndarray) -> tuple[np.nd
 
 
 def impedance(C: np.ndarray, density: float, directions: np.ndarray) -> np.ndarray:
-    """Return the impedances of plane waves along directions [..., d], tensors [..., d, d] in
-    Pa s/m: the root of density times Christoffel's tensor."""
+    """Return the impedances of plane waves along directions [..., d], tensors [..., d, d], Pa s/m:
+    the square root of density times Christoffel's tensor."""
     values, shapes = np.linalg.eigh(density * christoffel(C, directions))
     return np.einsum("...ik,...k,...jk->...ij", shapes, np.sqrt(np.maximum(values, 0.0)), shapes)
 
 
 def tensor(C: np.ndarray) -> np.ndarray:
-    """Return C_ijkl [d, d, d, d] of Voigt's form."""
+    """Return C_ijkl [d, d, d, d] from Voigt's form."""
     d = {3: 2, 6: 3}[len(C)]
     i, j = np.transpose(PAIRS[d])
     at = np.empty((d, d), np.int64)
@@ -180,20 +179,20 @@ def _scale(dimension: int) -> np.ndarray:
 
 
 def _kelvin(full: np.ndarray) -> np.ndarray:
-    """Return Kelvin's form of a tensor [d, d, d, d] of all minor symmetries."""
+    """Return Kelvin's form of a tensor [d, d, d, d] with both minor symmetries."""
     pairs, scale = PAIRS[len(full)], _scale(len(full))
     return np.array([[full[a + b] for b in pairs] for a in pairs]) * np.outer(scale, scale)
 
 
 class RigidFit(NamedTuple):
-    """Z_N and Z_T of each set [sets, 2], 1/Pa, and what they lack of S over S, norms of tensors."""
+    """Z_N and Z_T of each set [sets, 2], 1/Pa, and the residual, relative in the tensor norm."""
 
     compliance: np.ndarray
     left_over: float
 
 
 def rigid_fit(compliance: np.ndarray, normals: np.ndarray) -> RigidFit:
-    """Return the sets of rigid blocks nearest to a compliance.
+    """Return the joint sets of rigid blocks that are nearest to a compliance.
 
     compliance : S in Kelvin's form (1/Pa), [3, 3] or [6, 6]. normals : unit vectors [sets, d].
     """
@@ -207,13 +206,14 @@ def rigid_fit(compliance: np.ndarray, normals: np.ndarray) -> RigidFit:
 
 
 def nearest_stiffness(stiffness: np.ndarray, normals: np.ndarray) -> RigidFit:
-    """Return the sets of rigid blocks whose stiffness, not compliance, is nearest to one.
+    """Return the joint sets of rigid blocks that are nearest to a stiffness instead of a
+    compliance.
 
     stiffness : C in Kelvin's form (Pa), [3, 3] or [6, 6]. normals : unit vectors [sets, d].
 
-    Strains that the sets cannot take on are zero, as in rock that is confined: of orthogonal sets
-    in isotropic rock, waves along the normals have the rock's own speeds, which follow from C_11
-    and not from 1 / S_11. What is left over is again a part of the whole, those strains included.
+    Strains to which no set yields are zero, as in confined rock: waves along the normals of
+    orthogonal sets have isotropic rock's speeds, from C_11 and not 1 / S_11. The residual is
+    relative to the whole stiffness, those strains included.
     """
     from scipy.optimize import least_squares
 
@@ -240,11 +240,11 @@ def nearest_stiffness(stiffness: np.ndarray, normals: np.ndarray) -> RigidFit:
         xtol=PRECISE, ftol=PRECISE, gtol=PRECISE,
     ).x  # fmt: skip
     missing = float(1 - (aim**2).sum() + ((stiffness_of(z) - aim) ** 2).sum())
-    # Of all sets with this compliance those of least norm.
+    # Among all solutions with this compliance take the one of least norm.
     found = rigid_fit(np.einsum("k,kij->ij", scale / size * z, forms), normals)
     return found._replace(left_over=max(missing, 0.0) ** 0.5)
 
 
 def _forms(normals: np.ndarray) -> np.ndarray:
-    """Return the compliances of sets that open, and that slide, by one, in turn [2 sets, k, k]."""
+    """Return the unit compliances of opening and of sliding of each set, in turn [2 sets, k, k]."""
     return np.array([form(n) for n in normals for form in (opening, sliding)])

@@ -1,5 +1,4 @@
-"""Rock with equal joints across it as a homogenised bar, and as rigid blocks: Guo & Li (2002), (4)
-to (7)."""
+"""Rock with equal joints as a homogenised bar and as rigid blocks: Guo & Li (2002), (4) to (7)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -17,14 +16,14 @@ from jointwave.cases.material.rock import (
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
 
-#: Times that intact rock may be stiffer than rock with joints where it joins an end block to a
-#: wall: stiffer yet it would but shorten the step, of a half block that is rigid beside the joints.
+#: Most ratio of intact to jointed stiffness of the half block at a wall: a stiffer one would only
+#: shorten the time step, as it is rigid compared with the joints already.
 RIGID = 100.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointedRock:
-    """A pillar of one rock whose joints are equal.
+    """A pillar of one rock with equal joints.
 
     Attributes
     ----------
@@ -33,11 +32,11 @@ class JointedRock:
     density : kg/m3.
     modulus, poisson, shear_modulus : Young's modulus (Pa), Poisson's ratio and G (Pa) of the
         homogenised rock mass.
-    intact_modulus, intact_shear_modulus : of the blocks, Pa; None where the scene does not give it.
+    intact_modulus, intact_shear_modulus : of the blocks, Pa; None if the scene does not give it.
     time_constant : Kelvin-Voigt eta of rock and ordinary joints, s; None without dashpots.
     mass_damping : alpha of a force -alpha m v on every block, 1/s; None without.
     local_damping : Cundall's factor, 0 to 1; None without.
-    closes : d_m of the ordinary joints, m; None where they do not stiffen. prestress : Pa.
+    closes : d_m of ordinary joints, m; None if they do not stiffen. prestress : Pa.
     """
 
     block_count: int
@@ -87,7 +86,7 @@ class JointedRock:
 
     @property
     def impedance(self) -> float:
-        """Of axial waves and quiet ends, Pa s/m."""
+        """Impedance of axial waves and quiet ends, Pa s/m."""
         return self.density * self.bar_speed
 
     @property
@@ -107,13 +106,13 @@ class JointedRock:
 
     @property
     def regular_own_stiffness(self) -> float:
-        """K_n of an ordinary joint itself, Pa/m, by (4); needs intact_modulus."""
+        """K_n of an ordinary joint itself, Pa/m, from (4); needs intact_modulus."""
         assert self.intact_modulus is not None
         return joint_stiffness(self.modulus, self.intact_modulus, self.spacing)
 
     @property
     def regular_own_shear_stiffness(self) -> float:
-        """K_s of an ordinary joint itself, Pa/m; infinite where intact rock alone is too soft in
+        """K_s of an ordinary joint itself, Pa/m; infinite if intact rock alone is too soft in
         shear; needs intact_modulus."""
         assert self.intact_shear_modulus is not None
         intact = max(self.intact_shear_modulus, self.shear_modulus)
@@ -121,8 +120,8 @@ class JointedRock:
 
     @property
     def wall_stiffness(self) -> float:
-        """Of the half block of rock between the centre of an end block and a wall, Pa/m: intact
-        rock, for no joint is there; a block and its joint where no more is known."""
+        """Stiffness of the half block between an end block's centre and a wall, Pa/m: intact rock,
+        as no joint is there, or the rock mass if the intact modulus is unknown."""
         return self._half_block(self.modulus, self.intact_modulus)
 
     @property
@@ -132,12 +131,11 @@ class JointedRock:
 
     @property
     def at_rest(self) -> "JointedRock":
-        """This rock as small waves meet it, under its prestress."""
+        """This rock for small waves, with joints closed by its prestress."""
         return self.under(self.prestress)
 
     def under(self, stress: float) -> "JointedRock":
-        """Return this rock with its joints as stiff as they are under a stress (Pa), by
-        `joints.closure`."""
+        """Return this rock with its joints closed by a stress (Pa), by `joints.closure`."""
         if self.closes is None or stress <= 0:
             return self
         intact = self.intact_modulus or inf
@@ -146,20 +144,18 @@ class JointedRock:
         return self.but(modulus=equivalent_modulus(own, intact, self.spacing))
 
     def but(self, **changed: float) -> "JointedRock":
-        """Return this rock with other attributes."""
+        """Return this rock with changed attributes."""
         return JointedRock(**{f.name: getattr(self, f.name) for f in fields(JointedRock)} | changed)
 
     def _half_block(self, mass: float, intact: float | None) -> float:
-        """Return the stiffness of half a block (Pa/m) by the modulus of the rock mass, and that of
-        intact rock, which is no less, Pa."""
+        """Return the stiffness of half a block (Pa/m) from the moduli (Pa) of rock mass and intact
+        rock; the latter counts as at least the former."""
         return 2 * min(max(intact or mass, mass), RIGID * mass) / self.spacing
 
 
 def rock_of(scene: Scene) -> JointedRock:
-    """Return the rock of a scene of one rock, with its ordinary joints.
-
-    A stiffness that the joints give decides the modulus that otherwise decides the stiffness.
-    """
+    """Return the rock of a one-rock scene with its ordinary joints; a given joint stiffness sets
+    the modulus, otherwise the modulus sets the stiffness."""
     pillar, rock, joints = scene.pillar, scene.rock, scene.joints
     spacing, intact = pillar.length / pillar.block_count, rock.intact_modulus or inf
     intact_shear = shear_modulus(intact, rock.intact_poisson)
@@ -192,8 +188,8 @@ def rock_of(scene: Scene) -> JointedRock:
 
 
 def equivalent_constants(rock: Rock) -> tuple[float, float] | None:
-    """Return Young's modulus (Pa) and Poisson's ratio that [rock] gives the rock mass; None where
-    its joints do."""
+    """Return Young's modulus (Pa) and Poisson's ratio of the rock mass from [rock]; None if the
+    joints set them."""
     if rock.p_speed and rock.s_speed:
         return modulus_from_speeds(rock.p_speed, rock.s_speed, rock.density)
     if rock.equivalent_modulus is None or rock.equivalent_poisson is None:
@@ -204,16 +200,16 @@ def equivalent_constants(rock: Rock) -> tuple[float, float] | None:
 def joint_time_constant(
     scene: Scene, ratio: float | None, areal_mass: float, stiffness: float
 ) -> float:
-    """Return eta = c / k of a joint, s: Rayleigh's beta, or that of a damping ratio, whose dashpot
-    is c = 2 zeta sqrt(m k), m the mass of a block (kg/m2), k the stiffness K'_n (Pa/m)."""
+    """Return eta = c / k of a joint, s: Rayleigh's beta, or from a damping ratio, c = 2 zeta sqrt(m
+    k) with the mass of a block m (kg/m2) and the stiffness K'_n, k (Pa/m)."""
     if scene.damping.rayleigh is not None:
         return scene.damping.rayleigh.coefficients[1]
     return 2 * (ratio or 0.0) * sqrt(areal_mass / stiffness)
 
 
 def mean_of(rocks: Sequence[JointedRock]) -> JointedRock:
-    """Return the rock that a row of rocks is for long waves, of their mean density and compliance
-    (Backus, J. Geophys. Res. 67, 1962), damped like the one that is damped most."""
+    """Return the effective rock of a row of rocks for long waves, with mean density and compliance
+    (Backus, J. Geophys. Res. 67, 1962) and the largest time constant."""
     if len(rocks) == 1:
         return rocks[0]
     lengths = np.array([one.block_count * one.spacing for one in rocks])

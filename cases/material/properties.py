@@ -1,5 +1,4 @@
-"""The properties of a pillar: the rock between its joints, and stiffness, damping and strength of
-each joint."""
+"""Properties of a pillar: rock between its joints, and stiffness, damping and strength of each."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,19 +10,19 @@ from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.joint import JointLaw
 from jointwave.cases.schema.law_parts import PARTS, UNLIMITED, tangent
 
-#: The keys of slip: without them no joint has that effect.
+#: The keys of slip, without which no joint slides.
 SLIP = ("friction_angle", "cohesion", "residual_cohesion")
-#: The parameters that do not act only along a joint: axial motion ignores the others.
+#: Parameters that act also normal to a joint; axial motion ignores the others.
 ACROSS = tuple(name for part in PARTS if not part.along for name in part.without)
-#: All parameters, as `joints.law.Law` names them.
+#: All parameters, by their names in `joints.law.Law`.
 NAMES = ("friction", "cohesion", "residual_cohesion", *(n for part in PARTS for n in part.without))
 
 
 @dataclass(frozen=True)
 class Strength:
-    """The parameters of the joints' strength and closure, as `joints.law.Law` names them.
+    """Strength and closure parameters of the joints, by their names in `joints.law.Law`.
 
-    Each is an attribute: a float array [N - 1], None where no joint has it.
+    Each is an attribute: a float array [N - 1], or None if no joint has it.
     """
 
     given: dict[str, np.ndarray] = field(default_factory=dict)
@@ -36,22 +35,22 @@ class Strength:
     def strengths(
         self, shears: bool = True, joint: np.ndarray | slice = np.s_[:]
     ) -> dict[str, np.ndarray | None]:
-        """Return the parameters by name at some joints; shears : those along the joints, too."""
+        """Return the parameters of some joints by name; shears : include those along joints."""
         names = NAMES if shears else ACROSS
         return {name: self.given[name][joint] for name in names if name in self.given}
 
     def across(self) -> np.ndarray | bool:
-        """Return which joints have a part of the law that does not act only along them [N - 1]."""
+        """Return which joints have a part of the law that also acts normal to them [N - 1]."""
         without = {name: one for part in PARTS for name, one in part.without.items()}
         has = (self.given[name] != without[name] for name in ACROSS if name in self.given)
         return reduce(np.logical_or, has, False)
 
 
 def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
-    """Return the strength of joints, of which each has the law `which` (int array [n]) of `laws`.
+    """Return the strength of joints; which : index in `laws` of each joint's law, int array [n].
 
-    Beside joints that slip, one without friction and cohesion of its own has a cohesion without
-    limit; what a joint without another part has beside ones with it, `PARTS` says.
+    If some joints slip, one without friction and cohesion gets unlimited cohesion; for other parts
+    of the law `PARTS` has the values of joints without them.
     """
     angles, given, residual = ([getattr(law, key) for law in laws] for key in SLIP)
     never = [angle is None and own is None for angle, own in zip(angles, given, strict=True)]
@@ -74,8 +73,8 @@ def strength_of(laws: Sequence[JointLaw], which: np.ndarray) -> Strength:
 
 @dataclass(frozen=True, kw_only=True)
 class Properties(JointedRock, Strength):
-    """The properties of a scene shared by both engines and all exact solutions, with the strength
-    of its joints; where blocks or joints differ, one number for all of them is a mean.
+    """Properties of a pillar for engines and exact solutions, with the strength of its joints. If
+    blocks or joints differ, scalar attributes are means.
 
     Attributes
     ----------
@@ -84,19 +83,19 @@ class Properties(JointedRock, Strength):
     own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, (6)
         inverted, Pa/m; None without intact_modulus; infinite where the rock alone is too soft.
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
-    own_time_constant : the same of each joint by itself; between segments that of its halves.
+    own_time_constant : the same without the rock's part; between segments from both halves.
     ordinary_time_constant : float array [N - 1], eta of each joint without soft layers, s.
     tension : bool array [N - 1], whether a joint carries tension.
     soft : int array, indices of the joints that [[soft_layers]] changes.
     weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
-    regular : float array [N - 1], K'_n that the homogenised bar has at each joint, Pa/m.
-    half_joint : float array [2, N], what rock beside each joint has of the compliance of half an
-        ordinary one in the homogenised bar, m/Pa, normal and shear; never all that the rock has.
+    regular : float array [N - 1], K'_n of the homogenised bar at each joint, Pa/m.
+    half_joint : float array [2, N], half an ordinary joint's compliance in the homogenised bar of
+        each block, normal and shear, m/Pa; less than all of the bar's.
     rock_between : float array [N - 1], compliance of intact rock from centre to centre, m/Pa.
-    parts : the rock of each segment as if it were alone; none where all blocks are equal, and all
-        joints except the soft layers.
-    segment : int array [N], which of `each` the blocks belong to.
-    end_stress : what closes the joints at the start and the end at rest, Pa.
+    parts : the rock of each segment by itself; empty if all blocks are equal, and all joints except
+        soft layers.
+    segment : int array [N], index of each block's rock in `each`.
+    end_stress : stress that closes joints at the start and the end at rest, Pa.
     """
 
     contact_y: np.ndarray
@@ -119,12 +118,12 @@ class Properties(JointedRock, Strength):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all blocks are equal, and all joints except the soft layers."""
+        """Whether all blocks are equal, and all joints except soft layers."""
         return not self.parts
 
     @property
     def each(self) -> tuple[JointedRock, ...]:
-        """The rock of each segment; only these properties if there is one rock."""
+        """The rock of each segment; these properties alone if there is one rock."""
         return self.parts or (self,)
 
     @property
@@ -156,7 +155,7 @@ class Properties(JointedRock, Strength):
 
     @property
     def masses(self) -> np.ndarray | None:
-        """Mass of each block, kg [N]; None where all have `block_mass`."""
+        """Mass of each block, kg [N]; None if all have `block_mass`."""
         if self.is_uniform:
             return None
         density = np.array([one.density for one in self.parts])[self.segment]
@@ -164,7 +163,7 @@ class Properties(JointedRock, Strength):
 
     @property
     def resolved(self) -> np.ndarray:
-        """The joints of the jointed rock, int array: all, but for welds of intact rock."""
+        """Indices of the joints that the jointed rock resolves: all except welds of intact rock."""
         return np.flatnonzero(~self.weld)
 
     @property
@@ -174,29 +173,29 @@ class Properties(JointedRock, Strength):
 
     @property
     def rock_compliance(self) -> np.ndarray | None:
-        """What rock has of the compliance between rigid blocks [N - 1], m/Pa, at most all but a
-        billionth of it; None where no joint stiffens."""
+        """The rock's part of the compliance between rigid blocks [N - 1], m/Pa, at most all but
+        1e-9 of it; None if no joint stiffens."""
         if self.maximum_closure is None:
             return None
         return np.minimum(self.rock_between, (1 - 1e-9) / self.stiffness)
 
     @property
     def excess_compliance(self) -> np.ndarray:
-        """What each joint adds to the homogenised bar, which holds an ordinary one there, m/Pa.
+        """Compliance of each joint beyond the ordinary one in the homogenised bar [N - 1], m/Pa.
 
-        1/K = 1/K'_n - 1/K'_n(regular) [N - 1]; exactly zero for a joint as stiff as the others.
+        1/K = 1/K'_n - 1/K'_n(regular); exactly zero for a joint as stiff as the others.
         """
         return _beyond(self.stiffness, self.regular)
 
     @property
     def excess_shear_compliance(self) -> np.ndarray:
-        """The same of shear, m/Pa [N - 1]."""
+        """The same in shear, m/Pa [N - 1]."""
         return _beyond(self.shear_stiffness, self.regular_shear_stiffness)
 
     @property
     def excess_time_constant(self) -> np.ndarray:
-        """The time constant of the excess, s [N - 1]: slow motion finds the joint's dashpot there,
-        and the ordinary one in the bar. None below zero."""
+        """Time constant of the excess compliance, s [N - 1], such that excess and bar together have
+        the joint's dashpot in slow motion; never negative."""
         if self.joint_time_constant is None:
             return np.zeros_like(self.stiffness)
         viscous = self.joint_time_constant / self.stiffness
@@ -207,9 +206,9 @@ class Properties(JointedRock, Strength):
 
     @property
     def damps_alone(self) -> np.ndarray:
-        """Whether a joint as stiff as the others has a dashpot of its own, bool array [N - 1].
+        """Whether a joint as stiff as the others has a different dashpot, bool array [N - 1].
 
-        The homogenised bar has no place for such a dashpot.
+        The homogenised bar cannot represent such a dashpot.
         """
         if self.joint_time_constant is None:
             return np.zeros_like(self.tension)

@@ -1,8 +1,8 @@
-"""Impedances of the dashpots of quiet sides, of plane waves along their normals.
+"""Impedances of the dashpots of quiet sides, for plane waves along their normals.
 
-They are, region by region, those of the effective medium of all joint sets that have a spacing,
-closed by the stress there before any load, and of a pillar's bar under its prestress: rho a along
-the normal and rho b across it where rock has no such sets.
+In each region they are those of the effective medium of all joint sets with a spacing, closed by
+the stress before any load; at a pillar's ends those of its bar under the prestress. In rock without
+such sets they are rho a along the normal and rho b across it.
 """
 
 from math import isfinite
@@ -19,7 +19,7 @@ from jointwave.cases.partition.joints import within
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.tables import LEAN
 
-#: Rocks by their stiffness in Voigt's form (Pa) and density, and which of them each place has [m].
+#: Stiffness in Voigt's form (Pa) and density of each rock, and the index of the rock of places [m].
 Rocks = tuple[list[tuple[np.ndarray, float]], np.ndarray]
 
 
@@ -31,10 +31,10 @@ def impedances(
     other: Rocks | None = None,
     more: float = 0.0,
 ) -> np.ndarray:
-    """Return the dashpots of sides of outward normals [m, d] at places [m, d], m, of rock in these
-    regions [m]: tensors [m, d, d] that make the traction of a wave along the normal from its
-    velocity, Pa s/m; other : in place of the scene's rock between the joints. more : pressure, Pa,
-    that closes joints which stiffen beyond their initial stress."""
+    """Return the dashpots of sides with outward normals [m, d] at places [m, d], m, in regions [m]:
+    tensors [m, d, d], Pa s/m, that map the velocity of a wave along the normal to its traction.
+    other : rocks instead of the scene's rock between joints. more : pressure, Pa, that closes
+    joints in addition to the initial stress."""
     if scene.is_column:
         ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
         return along_and_across(normals, np.array(ends).reshape(-1, 2))
@@ -57,11 +57,11 @@ def impedances(
 
 
 def borne(scene: AnyScene, normals: np.ndarray) -> np.ndarray:
-    """Return whether quiet sides of outward normals [m, d] bear what gravity puts on them along
-    their normal and along themselves, tensors [m, d, d] of 1 or 0; d = 1 along a pillar.
+    """Return whether quiet sides with outward normals [m, d] bear weight along and across their
+    normal, tensors [m, d, d] with eigenvalues 1 or 0; d = 1 along a pillar.
 
-    Both below the rock, the first beside it: there is rock beyond, too. None above it. The ends of
-    a pillar bear both or none.
+    Sides below the rock bear both, sides beside it the normal part, as rock continues there; sides
+    above it none. The ends of a pillar bear both or none.
     """
     gravity = scene.gravity
     if gravity is None or not gravity.acceleration:
@@ -73,8 +73,8 @@ def borne(scene: AnyScene, normals: np.ndarray) -> np.ndarray:
 
 
 def half_joints(scene: AnyScene, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the half joints in front of matched sides of outward normals [m, d]: normal and shear
-    stiffness [m, 2], Pa/m, 0 of other sides, and time constants [m], s."""
+    """Return the half joints in front of matched sides with outward normals [m, d]: normal and
+    shear stiffness [m, 2], Pa/m, 0 for other sides, and time constants [m], s."""
     stiffness, eta = np.zeros((len(normals), 2)), np.zeros(len(normals))
     for k, (kind, rock) in enumerate(_ends(scene, normals)):
         if kind == "matched" and isfinite(rock.regular_own_stiffness):
@@ -84,7 +84,7 @@ def half_joints(scene: AnyScene, normals: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]:
-    """Return condition and rock of a pillar's ends of outward normals [m, d]; none of others."""
+    """Return condition and rock of a pillar's ends with outward normals [m, d]; none for others."""
     if not scene.is_column:
         return []
     p, along = calibrate(scene), normals[:, min(1, normals.shape[1] - 1)]
@@ -93,9 +93,9 @@ def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]
 
 
 def base_traction(impedance: np.ndarray, direction: list[float]) -> np.ndarray:
-    """Return the tractions [m, d] on a compliant base for each m/s that comes up, Pa s/m.
+    """Return the traction [m, d] on a compliant base per m/s of the incoming wave, Pa s/m.
 
-    Twice what its dashpots [m, d, d] take of it: the other half enters (Mejia & Dawson, 4th FLAC
-    Symposium, 2006).
+    It is twice that of the dashpots [m, d, d], which take half; the other half enters (Mejia &
+    Dawson, 4th FLAC Symposium, 2006).
     """
     return 2 * impedance @ np.array(direction)

@@ -1,14 +1,14 @@
-"""The stiffness of joints between rigid blocks, which carry the compliance of the rock as well.
+"""Stiffness of the joints between rigid blocks, which also carry the rock's compliance.
 
-Every direction of joints gets an excess compliance Z0 (1/Pa, normal and shear, not negative) that
-together come nearest to the intact rock (`effective_medium`), and a contact between blocks
+Every joint direction gets non-negative excess compliances Z0 (1/Pa, normal and shear) that together
+come nearest to the intact rock (`effective_medium`). A contact between blocks has
 
     1 / K' = 1 / K + Z0 h,
 
-h the distance of lines of its direction: never stiffer than the joint itself. A cut through intact
-rock has K = inf. Of one set it is equation (6) with the modulus of confined rock. Each region of
-rock has excess compliances of its own; a joint between two regions takes half of either's, and so
-does a welded boundary, which has no joint, with the thickness of the blocks beside it for h.
+h the spacing of planes in its direction: it is never stiffer than the joint itself. A cut through
+intact rock has K = inf. For one set this is equation (6) with the modulus of confined rock. Each
+region of rock has its own excess compliances; a joint between two regions takes half of each, and
+so does a welded boundary without a joint, with the thickness of the neighbouring blocks as h.
 """
 
 from typing import NamedTuple
@@ -34,17 +34,17 @@ from jointwave.cases.schema.rock_mass import RockMass
 
 #: Sine of the angle up to which a contact lies along joints.
 PARALLEL = 1e-9
-#: Of the compliance of confined rock along a normal, and in shear: the least of a direction with
-#: cuts. The nearest may be zero, and rigid contacts have no step.
+#: Least compliance of a direction with cuts, over that of confined rock, normal and in shear: the
+#: best fit may be zero, and rigid contacts allow no time step.
 LEAST = 0.05
 
 
 class RigidJoints(NamedTuple):
-    """Of each column, a joint set or a set of cuts in one rock or between two: K'_n and K'_s, Pa/m,
-    and what of it is the rock's own compliance, normal and in shear [2, columns], m/Pa.
+    """Stiffness K'_n and K'_s, Pa/m, of each column (a joint set or set of cuts in one rock or
+    between two), and the rock's part of the compliance, normal and shear [2, columns], m/Pa.
 
-    kinds : set, and regions on both sides [columns, 3]. left_over : the part of the intact rock's
-    stiffness that rigid blocks cannot have, over all; the most of any region.
+    kinds : set, and regions on both sides [columns, 3]. left_over : part of the intact rock's
+    stiffness that rigid blocks cannot represent, relative; the largest of all regions.
     """
 
     normal: np.ndarray
@@ -55,9 +55,9 @@ class RigidJoints(NamedTuple):
 
 
 class RockShare(NamedTuple):
-    """What intact rock adds to the joints of one region: the normals of their directions [n, d],
-    excess compliances Z0, normal and in shear [n, 2], 1/Pa, distances of planes [n], m, which
-    direction each set has, -1 for none [sets], and what is left over."""
+    """Compliance that intact rock adds to the joints of one region: normals of joint directions [n,
+    d]; excess Z0, normal and shear [n, 2], 1/Pa; spacings of planes [n], m; direction of each set
+    [sets], -1 for none; residual as in `RigidJoints`."""
 
     normals: np.ndarray
     compliance: np.ndarray
@@ -66,7 +66,7 @@ class RockShare(NamedTuple):
     left_over: float
 
     def parallel_to(self, normal: np.ndarray) -> int:
-        """Return which direction a unit normal [d] is that of, -1 for none."""
+        """Return the index of the direction parallel to a unit normal [d], or -1."""
         across = self.normals - np.outer(self.normals @ normal, normal)
         sines = np.linalg.norm(across, axis=1)
         return int(sines.argmin()) if sines.min(initial=1.0) < PARALLEL else -1
@@ -77,9 +77,8 @@ def rigid_joints(
 ) -> RigidJoints:
     """Return the stiffness between rigid blocks; further : the cuts of `partition.lattice`.
 
-    kinds : of `RigidJoints`; absent: every set in the rock of no region. A joint that is alone
-    has its own compliance, and nothing of the rock's. Raises SceneError where no lines are there to
-    pass the waves of a scene.
+    kinds : see `RigidJoints`; absent: every set in the rock outside all regions. A single joint has
+    its own compliance only. Raises SceneError if blocks cannot represent the scene.
     """
     sets = [*scene.joint_sets, *further]
     if kinds is None:
@@ -99,8 +98,8 @@ def rigid_joints(
 
 
 def long_wave_stiffness(scene: RockMass, further: list[JointSet]) -> np.ndarray:
-    """Return C (Pa) of long waves through rigid blocks of the rock of no region, in Voigt's form;
-    enormous for strains that no joint gives way to."""
+    """Return C (Pa) of long waves through rigid blocks outside all regions, in Voigt's form; very
+    large for strains to which no joint yields."""
     share, dim = rock_shares(scene, further)[-1], scene.domain.dimension
     own = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     excess = zip(share.normals, share.compliance, strict=True)
@@ -117,12 +116,12 @@ def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:
 
 
 def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
-    """Return the same of a scene of one rock, some of whose sets, the first ones, are real."""
+    """Return the rock share of a scene of one rock, whose first `real` sets are joints."""
     dim = scene.domain.dimension
     groups = by_direction(scene.joint_sets)
     spaced = [group for group in groups if any(one.spacing for one in group)]
     normals = np.array([group[0].normal for group in spaced])
-    if not spaced:  # rock between joints that are alone stays rigid
+    if not spaced:  # rock between single joints stays rigid
         none = np.zeros((0, 2))
         return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)
     rock = elastic_rock(scene.rock)
@@ -136,8 +135,8 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
             [m for m in own if m >= real],
             [m for m in own if m < real and sets[m].spacing],
         )
-        # The lines of a lattice hold the first set, or the joint, that it is made for; a joint
-        # alone without one has none beside it.
+        # The planes of a lattice include the set or single joint it was made for; a single joint
+        # without a lattice has no parallel planes.
         lines = [*cuts, *joints[1:]] if cuts else joints
         direction[own if cuts else joints] = k
         apart[k] = 1 / sum(1 / (sets[m].spacing or np.inf) for m in lines)
@@ -154,12 +153,12 @@ def welds(
     normal: np.ndarray,
     shift: np.ndarray,
 ) -> np.ndarray:
-    """Return the stiffness, normal and in shear [2, c], Pa/m, of contacts between pairs of blocks
-    [c, 2] that no joint set and no set of cuts made: the rock on both sides in series.
+    """Return the stiffness, normal and shear [2, c], Pa/m, of contacts between pairs of blocks [c,
+    2] that belong to no set of joints or cuts: the rock on both sides in series.
 
-    start : a place on each contact [c, d], m. normal : [c, d]. shift : by which blocks j stand
-    elsewhere, across periodic sides [c, d], m. Beside another region's rock, half a block has the
-    compliance of its joints along the contact, if there are some.
+    start : a point of each contact [c, d], m. normal : [c, d]. shift : offset of blocks j across
+    periodic sides [c, d], m. Next to another region, half a block has the compliance of its
+    region's joints parallel to the contact, if there are any.
     """
     if not len(pairs):
         return np.zeros((2, 0))
@@ -183,8 +182,8 @@ def welds(
 
 
 def against(scene: RockMass) -> str | None:
-    """Return why rigid blocks cannot represent a scene, None if they can: those between joints that
-    are alone can where no wave is to be resolved."""
+    """Return why rigid blocks cannot represent a scene; None if they can. Blocks between single
+    joints can only if no wave has to be resolved."""
     if scene.domain.mesh is not None:
         return "cannot make rigid blocks from the cells of domain.mesh"
     if (rock := scene.domain.given) is not None:

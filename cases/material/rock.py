@@ -1,8 +1,7 @@
-"""Isotropic elastic rock by its density and the speeds of its waves, and its moduli from these and
-back: Guo & Li (2002), (4) and (5).
+"""Isotropic elastic rock: wave speeds and moduli, and conversions; Guo & Li (2002), (4) and (5).
 
-The rock mass is intact rock in series with its joints. Rigid blocks have no compliance of their
-own, so their joints carry all of it: K' = E_eq / S, (6), and in shear G / S, (7).
+The rock mass is intact rock in series with its joints. Rigid blocks have no compliance, so their
+joints carry all of it: K' = E_eq / S, (6), and in shear G / S, (7).
 """
 
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ Values = float | np.ndarray
 
 @dataclass(frozen=True)
 class ElasticRock:
-    """Isotropic rock: density (kg/m3) and the speeds of P and S waves (m/s), or arrays of them."""
+    """Isotropic rock: density (kg/m3) and speeds of P and S waves (m/s), or arrays of them."""
 
     density: Values
     p_speed: Values
@@ -51,7 +50,7 @@ def elastic_rock(rock: IntactRock) -> ElasticRock:
 
 
 def modulus_from_speeds(p_speed: float, s_speed: float, density: float) -> tuple[float, float]:
-    """Return Young's modulus (Pa) and Poisson's ratio of a medium of these speeds (m/s)."""
+    """Return Young's modulus (Pa) and Poisson's ratio from wave speeds (m/s)."""
     p2, s2 = p_speed**2, s_speed**2
     poisson = (p2 - 2 * s2) / (2 * (p2 - s2))
     return 2 * density * s2 * (1 + poisson), poisson
@@ -64,7 +63,7 @@ def speeds_from_modulus(modulus: float, poisson: float, density: float) -> tuple
 
 
 def shear_modulus(modulus: float, poisson: float) -> float:
-    """Return G (Pa) of Young's modulus (Pa) and Poisson's ratio."""
+    """Return G (Pa) from Young's modulus (Pa) and Poisson's ratio."""
     return modulus / (2 * (1 + poisson))
 
 
@@ -77,7 +76,7 @@ def wave_moduli(rock: IntactRock) -> np.ndarray:
 
 def joint_stiffness(equivalent: float, intact: float, spacing: float) -> float:
     """Return the joint's own K_n (Pa/m) that gives the rock mass its modulus, equation (4);
-    infinite where that is the intact rock's."""
+    infinite if the moduli are equal."""
     if equivalent == intact:
         return inf
     return 1 / (spacing * (1 / equivalent - 1 / intact))

@@ -1,4 +1,4 @@
-"""A rock mass in numbers: dashpots of its joints, whether they bear a prestress, and its blocks."""
+"""Numbers of a rock mass: dashpots of its joints, initial stress, strength check, block summary."""
 
 from math import inf, radians, sqrt, tan
 from typing import Any
@@ -18,19 +18,18 @@ from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import REST, RockMass
 
-#: Parts of the way to the top at which the density of the rock above is taken.
+#: Fractions of the height up to the top at which the overlying density is sampled.
 ABOVE = (np.arange(200) + 0.5) / 200
-SLACK = 1e-9  # of the stress: tractions that are at a limit
-#: What the sizes of blocks and of contacts are, by the number of dimensions.
+SLACK = 1e-9  # tolerated excess over a strength, over the stress
+#: Names of the sizes of blocks and contacts, by the number of dimensions.
 SIZES = {2: ("area", "length"), 3: ("volume", "area")}
 
 
 def set_time_constants(scene: RockMass) -> np.ndarray | None:
-    """Return eta of each joint set of a rock mass, normal and in shear, s [sets]; None without any
-    dashpot.
+    """Return eta of each joint set, normal and shear, s [sets]; None without dashpots.
 
-    The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: its density times
-    the spacing, or half of the domain's extent across a joint that is alone.
+    The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: density times the
+    spacing, or half of the domain's extent across a single joint.
     """
     sets = scene.joint_sets
     if scene.damping.rayleigh is not None:
@@ -49,7 +48,7 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
 
 def initial_stress(scene: RockMass, places: np.ndarray) -> np.ndarray:
     """Return the stress before any load at places [m, d], m, compression positive, Pa [m, d, d]:
-    the prestress and, at rest, the weight of the rock above, confined."""
+    the prestress and, in a static scene, the weight of the overlying rock, confined."""
     found = np.zeros((*places.shape, places.shape[1]))
     if scene.prestress is not None:
         found += scene.prestress.tensor
@@ -67,8 +66,8 @@ def initial_stress(scene: RockMass, places: np.ndarray) -> np.ndarray:
 
 
 def refuse_beyond_strength(scene: AnyScene) -> None:
-    """Raise SceneError where a joint opens or slides under the prestress: the scene would not start
-    in equilibrium. Under weight the static state says whether it does."""
+    """Raise SceneError if a joint opens or slides under the prestress: the scene would not start in
+    equilibrium. With weight, the static state decides that."""
     weighed = scene.gravity is not None and scene.gravity.static
     for one in scene.joint_sets if scene.prestress is not None and not weighed else ():
         if what := beyond_strength(one, scene.prestress.tensor):  # type: ignore[union-attr]
@@ -77,8 +76,7 @@ def refuse_beyond_strength(scene: AnyScene) -> None:
 
 
 def beyond_strength(joint: JointSet, sigma: np.ndarray) -> str | None:
-    """Return whether a joint "opens" or "slides" under a stress [d, d], Pa; None if it carries
-    it."""
+    """Return whether a joint "opens" or "slides" under a stress [d, d], Pa; None if it holds."""
     normal, traction = joint.normal, sigma @ joint.normal
     t_n, slack = float(normal @ traction), SLACK * np.abs(sigma).max()
     t_s = float(np.linalg.norm(traction - t_n * normal))
@@ -92,12 +90,9 @@ def beyond_strength(joint: JointSet, sigma: np.ndarray) -> str | None:
 
 
 def block_summary(scene: RockMass) -> dict[str, Any]:
-    """Cut a rock mass into blocks and return what they are, SI, with each region and last "rock",
-    the rest; how many rigid blocks there are, and what part of the intact rock's stiffness they
-    cannot have.
-
-    Raises SceneError where the rock cannot be cut.
-    """
+    """Return a summary of a rock mass cut into blocks, in SI: sizes, contacts and boundaries, each
+    region and last "rock", the number of rigid blocks, and the part of the intact rock's stiffness
+    that they cannot represent. Raises SceneError if the rock cannot be cut."""
     found = blocks_of_scene(scene)
     size, contact_size = SIZES[scene.domain.dimension]
     width, sides = widths(found.body, found.body.halves()), shape_of(scene.domain).sides

@@ -1,1 +1,1 @@
-"""The scene vocabulary: tables and keys of a scene file, their types and consistency."""
+"""Models of a scene file: its tables and keys, their types and consistency."""

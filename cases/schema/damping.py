@@ -1,4 +1,4 @@
-"""Damping of the motion itself and of the rock, besides the damping ratio of the joints."""
+"""Damping of the rock and of its motion, besides the damping ratio of the joints."""
 
 from collections.abc import Iterable
 from math import pi
@@ -16,8 +16,8 @@ from jointwave.cases.schema.values import (
     contradiction,
 )
 
-WIDEST = 1e4  # of a band: its ends, one over the other
-#: Why rigid blocks do not solve a scene with a quality factor.
+WIDEST = 1e4  # largest ratio of the ends of a band
+#: Why rigid blocks refuse a scene with a quality factor.
 NOT_OF_BLOCKS = (
     "is not supported by rigid blocks, whose rock does not deform; the continuum and, of a pillar, "
     "the exact bars support it"
@@ -47,9 +47,9 @@ class Attenuating(Table):
         return self
 
     def quality_frequencies(self, pulses: Iterable[Pulse]) -> tuple[float, float, float]:
-        """Return the reference frequency and the band under these pulses, Hz.
+        """Return the reference frequency and the ends of the band for these pulses, Hz.
 
-        Raises a contradiction where none has a period, or the band leaves out the reference.
+        Raises a contradiction if no pulse has a period, or the band excludes the reference.
         """
         period = shortest_period(pulses)
         at = self.reference_frequency or (1 / period if period else None)
@@ -67,7 +67,7 @@ class Rayleigh(Table):
     """Damping ratios at two frequencies, with zeta = alpha / (2 omega) + beta omega / 2."""
 
     frequencies: Annotated[list[Positive], Two, Increasing]  #: Hz
-    ratios: Annotated[list[NonNegative], Two]  #: zeta at them
+    ratios: Annotated[list[NonNegative], Two]  #: zeta at these frequencies
 
     @model_validator(mode="after")
     def _both_damp(self) -> "Rayleigh":
@@ -81,7 +81,7 @@ class Rayleigh(Table):
 
     @property
     def coefficients(self) -> tuple[float, float]:
-        """Alpha (1/s) and beta (s) of the damping matrix alpha M + beta K."""
+        """Coefficients alpha (1/s) and beta (s) of the damping matrix alpha M + beta K."""
         (w1, w2), (z1, z2) = (2 * pi * f for f in self.frequencies), self.ratios
         scale = 2 / (w2**2 - w1**2)
         return scale * w1 * w2 * _less(z1 * w2, z2 * w1), scale * _less(z2 * w2, z1 * w1)
@@ -109,5 +109,5 @@ class Damping(Table):
 
 
 def _less(a: float, b: float) -> float:
-    """Return a - b without the round-off of two numbers that are equal."""
+    """Return a - b, exactly 0 for numbers that are equal up to round-off."""
     return 0.0 if abs(a - b) <= 1e-12 * a else a - b

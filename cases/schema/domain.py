@@ -24,12 +24,12 @@ from jointwave.cases.schema.values import (
 
 
 class Prism(Table):
-    """An opening in space, the prism of a polygon: a tunnel, or a cavern with an arched roof."""
+    """An opening in space with a polygonal section: a tunnel, or a cavern with an arched roof."""
 
     #: m, corners, by their two coordinates other than along the axis, in the order x, y, z
     polygon: Annotated[list[Offset], Field(min_length=3)]
-    axis: Literal["x", "y", "z"]  #: along which it reaches
-    #: m, from where to where along the axis; absent: all through the domain
+    axis: Literal["x", "y", "z"]  #: of the prism
+    #: m, start and end along the axis; absent: all through the domain
     ends: Annotated[list[Number], Two, Increasing] | None = None
 
 
@@ -45,19 +45,19 @@ class Domain(Table):
     #: facets of each joint set; its outline and openings are those of the rock. Tetrahedra and
     #: hexahedra make the scene one in space
     mesh: str | None = None
-    #: a file of convex blocks instead: VTU (.vtu) with a cell, gmsh (.msh) with a surface or a
-    #: volume, COMPAS (.json) with a mesh or OBJ (.obj) with an object a block; blocks in space make
-    #: the scene one in space. Contacts belong to the set of their gmsh group "joint NAME", in files
-    #: without groups to the set whose planes are nearest to theirs
+    #: a file of convex blocks instead, each a cell of VTU (.vtu), a surface or volume of gmsh
+    #: (.msh), a mesh of COMPAS (.json) or an object of OBJ (.obj); blocks in space make the scene
+    #: one in space. Contacts belong to the set of their gmsh group "joint NAME", in files without
+    #: groups to the set whose planes are nearest in angle
     blocks: str | None = None
-    #: m, corners of polygons to be excavated; in space of boxes, two opposite corners each
+    #: m, corners of polygons to be excavated; in space two opposite corners of each box
     openings: list[list[Point]] = Field(default_factory=list)
     prisms: list[Prism] = Field(default_factory=list)
     #: for non-convex blocks at openings; cut: into convex parts along the opening's faces
     non_convex: Literal["refuse", "cut"] = "refuse"
     #: for blocks below the next two limits; merge: with a neighbour, if the result is convex
     slivers: Literal["merge", "refuse"] = "merge"
-    least_width: Positive | None = None  #: m, of a block; default a hundredth of the least spacing
+    least_width: Positive | None = None  #: m, of a block; absent: a hundredth of the least spacing
     least_angle: Annotated[float, Field(ge=0, le=30)] = 1.0  #: degrees, in a block
 
     _mesh_path: Path | None = PrivateAttr(default=None)
@@ -84,7 +84,7 @@ class Domain(Table):
 
     @property
     def file_key(self) -> str | None:
-        """The key that names a file of rock cells or blocks, None without."""
+        """The key that names a file of rock cells or blocks; None without."""
         if self.mesh is None and self.blocks is None:
             return None
         return "domain.blocks" if self.mesh is None else "domain.mesh"
@@ -100,8 +100,8 @@ class Domain(Table):
             raise contradiction(key, self.mesh or self.blocks, str(error)) from None
 
     def join(self, names: list[str], normals: np.ndarray) -> None:
-        """Let the contacts of a file belong to joint sets, once: scenes that are made of this one
-        share its domain. normals : of the sets [sets, d]. Raises a contradiction."""
+        """Assign the contacts of a file to joint sets, once, as scenes derived from this one share
+        its domain. normals : of the sets [sets, d]. Raises a contradiction."""
         from jointwave.cases.geometry.own_blocks import with_sets
         from jointwave.cases.gmsh_file import MeshError
 
@@ -116,11 +116,11 @@ class Domain(Table):
 
     @property
     def given(self) -> Complex | None:
-        """The blocks of the file `mesh` or `blocks`; None where joint sets cut the domain."""
+        """The blocks of the file `mesh` or `blocks`; None if joint sets cut the domain."""
         return self._body
 
     def cells(self, names: list[str]) -> Complex:
-        """Return the blocks of the file with the joints of some of the scene's sets."""
+        """Return the blocks of the file with the joints of some of the scene's sets only."""
         assert self._body is not None
         known = {name.lower(): k for k, name in enumerate(names)}
         joints = self._sets if self._sets is not None else self._groups or []
@@ -129,7 +129,7 @@ class Domain(Table):
 
     @property
     def mesh_path(self) -> Path | None:
-        """The file `mesh` or `blocks`, found relative to the scene's."""
+        """The file `mesh` or `blocks`, relative to the scene's folder."""
         return self._mesh_path
 
     @property
@@ -139,12 +139,12 @@ class Domain(Table):
 
     @property
     def extent(self) -> np.ndarray:
-        """Its size along each axis, m [d]."""
+        """Size along each axis, m [d]."""
         return np.ptp(self.corners, axis=0)
 
     @property
     def holes(self) -> list[Any]:
-        """All openings: corners of polygons or boxes, or of those in a file, m, and prisms."""
+        """All openings: corners of polygons or boxes, m (of the file's, if given), and prisms."""
         own = [*self.openings, *self.prisms]
         return own if self.given is None else self._outlines[1:]
 

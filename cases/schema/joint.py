@@ -55,10 +55,10 @@ class Joints(JointLaw):
     #: of rigid blocks, with midpoint or gauss: n per edge in the plane, n x n per face in space;
     #: absent: 2
     contact_points: Annotated[int, Field(ge=1, le=8)] | None = None
-    #: vertices: corners and centroid, all of the face's bending stiffness, and where it opens its
-    #: whole half width as lever; midpoint: cell centres, 1 - 1/n^2 of the stiffness and 1 - 1/n of
-    #: the half width; gauss: all of the stiffness and 0.58, 0.77, 0.86, ... 0.96 of the half width
-    #: for n = 2, 3, 4, ... 8
+    #: vertices: corners and centroid, with all of the face's bending stiffness, and its whole half
+    #: width as lever where it opens; midpoint: cell centres, 1 - 1/n^2 of the stiffness and 1 - 1/n
+    #: of the half width; gauss: all of the stiffness and 0.58, 0.77, 0.86, ... 0.96 of the half
+    #: width for n = 2, 3, 4, ... 8
     point_rule: Literal["vertices", "midpoint", "gauss"] = "vertices"
 
     @model_validator(mode="after")
@@ -70,8 +70,8 @@ class Joints(JointLaw):
 
 
 class SoftLayer(JointLaw):
-    """One joint with a law of its own; absent keys are taken from [joints], but not those that
-    contradict its own."""
+    """One joint with its own law; absent keys are taken from [joints], except those that contradict
+    its own."""
 
     y: Positive  #: m, on a joint
     spacing_stiffness: Positive | None = None  #: Pa, S K_n; absent: as stiff as the other joints
@@ -94,13 +94,13 @@ class SoftLayer(JointLaw):
         return self
 
     def own_stiffness(self, spacing: float) -> float | None:
-        """K_n given by the layer itself, Pa/m; None if it is as stiff as the other joints."""
+        """Return the layer's given K_n, Pa/m; None if it is as stiff as the other joints."""
         if self.spacing_stiffness is not None:
             return self.spacing_stiffness / spacing
         return self.normal_stiffness
 
 
-#: Cosine and sine of dips, degrees, that are exact.
+#: Exact cosine and sine of some dips, degrees.
 EXACT = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0)}
 
 
@@ -111,7 +111,7 @@ def direction_of(dip: float) -> np.ndarray:
 
 
 class Inclined(Table):
-    """What lies along planes of a dip, and in space of a direction of their line of dip."""
+    """Planes with a dip, and in space a dip direction."""
 
     _dimension: int = PrivateAttr(default=2)
 
@@ -128,8 +128,8 @@ class Inclined(Table):
 
     @property
     def frame(self: Any) -> np.ndarray:
-        """The unit normal of the planes, which points up, and unit vectors in them [d, d]: in the
-        plane the direction of joints, in space the strike and the line of dip."""
+        """The upward unit normal of the planes, then unit vectors in them [d, d]: in the plane the
+        direction of the joints, in space strike and dip line."""
         down, up = direction_of(self.dip)
         if self._dimension == 2:
             return np.array([[-up, down], [down, up]])
@@ -141,7 +141,7 @@ class Inclined(Table):
 
     @property
     def normal(self) -> np.ndarray:
-        """The unit normal of the planes [d], which points up."""
+        """The upward unit normal of the planes [d]."""
         return self.frame[0]
 
 

@@ -1,6 +1,4 @@
-"""Every table and key of a scene file, its meaning and its allowed values, from the models that
-read it.
-"""
+"""Tables and keys of a scene file, with meanings and allowed values taken from the models."""
 
 import inspect
 import re
@@ -20,13 +18,13 @@ NOT_A_KEY = {"name"}  # of a scene: only [[variants]] have one
 #: The package that defines all models.
 CASES = __name__.rpartition(".schema.")[0]
 
-#: What [expect] pairs; `cases` does not know their names.
+#: Word for the members of a pair in [expect]; `cases` does not know their names.
 SOLVERS = "solvers"
 WORDS = {float: "number", int: "whole number", str: "string", bool: "`true` or `false`"}
 BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 LENGTHS = {"min_length": "at least", "max_length": "at most"}
-FIELD = re.compile(r"    (\w+): ")  # of a model
-#: Requirements of the functions that check a value; empty for bounds that only exclude nonsense.
+FIELD = re.compile(r"    (\w+): ")  # a field of a model
+#: Wording of validators' requirements; empty for bounds that only exclude nonsense.
 CHECKS = {"_magnitude": "", "_words": ""} | {
     "_unit": "of length 1",
     "_per_axis": "one for each axis",
@@ -35,8 +33,8 @@ CHECKS = {"_magnitude": "", "_words": ""} | {
 
 
 class TableOf(NamedTuple):
-    """A table of a scene file: its dotted path, empty for the top, its model, and whether there may
-    be any number of it."""
+    """A table of a scene file: dotted path (empty for the top), model, whether it may be
+    repeated."""
 
     path: str
     model: type[BaseModel]
@@ -44,7 +42,7 @@ class TableOf(NamedTuple):
 
     @property
     def fields(self) -> list[tuple[str, FieldInfo]]:
-        """The keys of this table, subtables included."""
+        """The keys of this table, including subtables."""
         named = self.model.model_fields.items()
         return [(name, field) for name, field in named if self.path or name not in NOT_A_KEY]
 
@@ -54,12 +52,12 @@ class TableOf(NamedTuple):
 
     @property
     def heading(self) -> str:
-        """The line that begins the table; empty for the top of the file."""
+        """The heading of the table in a file; empty for the top level."""
         return (f"[[{self.path}]]" if self.many else f"[{self.path}]") if self.path else ""
 
 
 def tables(path: str = "", model: type[BaseModel] = Scene, many: bool = False) -> Iterator[TableOf]:
-    """Yield every table below a model, itself first, in the order of the models."""
+    """Yield every table of a model, itself first, in the order of the models."""
     table = TableOf(path, model, many)
     yield table
     for name, field in model.model_fields.items():
@@ -69,7 +67,7 @@ def tables(path: str = "", model: type[BaseModel] = Scene, many: bool = False) -
 
 
 def keys(model: type[BaseModel] = Scene) -> Iterator[tuple[str, FieldInfo]]:
-    """Yield the dotted path of every key of a scene file, without tables."""
+    """Yield the dotted path of every key of a scene file, except tables."""
     for table in tables(model=model):
         for name, field in table.fields:
             if not model_in(field.annotation):
@@ -78,8 +76,7 @@ def keys(model: type[BaseModel] = Scene) -> Iterator[tuple[str, FieldInfo]]:
 
 @cache
 def field_comments(model: type) -> Mapping[str, str]:
-    """Return the comment of each field of a model, above or beside it, inherited fields
-    included."""
+    """Return the comment above or after each field of a model, including inherited fields."""
     found: dict[str, str] = {}
     for base in reversed(model.__mro__):
         above: list[str] = []
@@ -96,7 +93,7 @@ def field_comments(model: type) -> Mapping[str, str]:
 
 
 def in_words(field: FieldInfo) -> str:
-    """Return the allowed values of a field, in words; KeyError for an unknown type or check."""
+    """Return the allowed values of a field as text; KeyError for an unknown type or check."""
     return _words(field.annotation, field.metadata)
 
 

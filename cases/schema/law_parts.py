@@ -1,4 +1,4 @@
-"""The optional parts of the joint law as all but their formulas know them."""
+"""The optional parts of the joint law, except their formulas."""
 
 from collections.abc import Callable, Mapping
 from math import atan, degrees
@@ -7,21 +7,20 @@ from typing import Any, NamedTuple
 
 from jointwave.cases.schema.joint import JointLaw, SoftLayer
 
-#: Strength (Pa) and opening (m) of a joint that never fails beside joints that do, and closure (m)
-#: of one that does not stiffen; its square is still a number.
+#: Strength (Pa) and critical opening (m) of a joint that never fails among joints that do, and
+#: maximum closure (m) of one that does not stiffen; its square does not overflow.
 UNLIMITED = 1e100
 
 
 class LawPart(NamedTuple):
-    """An optional part of the joint law, all but its formula.
+    """An optional part of the joint law, except its formula.
 
-    name : of the effect. keys : which need one another; the first says whether a joint has the
-    part. others : keys that need not be given.
-    without : the parameters of `joints.law.Law` that it brings, at their values in a joint without
-    it beside ones with it. made : how those follow from the keys that are no keys themselves.
-    words : what a joint with it does. along : whether it acts in shear only. instead_of : keys that
-    contradict it.
-    wrong : returns which key contradicts others and what is allowed, None where none does.
+    name : of the effect. keys : required together; the first says whether a joint has the part.
+    others : optional keys. without : the parameters of `joints.law.Law` that the part adds, with
+    the values of a joint without it among joints with it. made : formulas of parameters that are
+    not keys. words : what a joint with it does. along : whether it acts in shear only. instead_of :
+    keys that contradict it. wrong : returns a key that contradicts others and what is allowed, or
+    None.
     """
 
     name: str
@@ -39,12 +38,12 @@ class LawPart(NamedTuple):
         return getattr(law, self.keys[0]) is not None
 
     def why(self, has: bool) -> str:
-        """Return in words which key says whether joints have it."""
+        """Return which key says whether joints have it, as text."""
         return f"{self.keys[0]} is given" if has else f"no {self.keys[0]}"
 
     @property
     def all_keys(self) -> tuple[str, ...]:
-        """Every key of it."""
+        """All its keys."""
         return (*self.keys, *self.others)
 
     def parameters(self, law: JointLaw) -> list[float]:
@@ -57,14 +56,14 @@ class LawPart(NamedTuple):
 
 
 def tangent(angle: float | None) -> float:
-    """Return the tangent of an angle in degrees, 0 of none."""
-    import numpy as np  # not where keys alone are completed
+    """Return the tangent of an angle in degrees; 0 for None."""
+    import numpy as np  # not needed for completing keys
 
     return float(np.tan(np.radians(angle or 0.0)))
 
 
 def _needs_friction(key: str) -> Callable[[Any], tuple[str, str] | None]:
-    """Return the check that an angle is at most that of friction."""
+    """Return the check that an angle does not exceed the friction angle."""
 
     def wrong(law: JointLaw) -> tuple[str, str] | None:
         angle, static = getattr(law, key), law.friction_angle
@@ -76,8 +75,8 @@ def _needs_friction(key: str) -> Callable[[Any], tuple[str, str] | None]:
 
 
 def _lifts_too_far(law: JointLaw) -> tuple[str, str] | None:
-    """What lifts the faces must not take more work than friction gives: both tangents are linear in
-    the path, so that the ends of the weakening decide."""
+    """Check that dilation takes no more work than friction dissipates: both tangents are linear in
+    the slip path, so the ends of the weakening decide."""
     if (found := _needs_friction("dilation_angle")(law)) is not None:
         return found
     dynamic, distance = law.dynamic_friction_angle, law.weakening_distance
@@ -132,7 +131,7 @@ PARTS = (
                 law.initial_state or law.critical_slip_distance / law.reference_rate
             )
         },
-        # Friction is as small as slip is slow: nothing could lift the faces.
+        # Friction vanishes in slow slip: it could not do the work of dilation.
         instead_of=("dynamic_friction_angle", "dilation_angle"),
         wrong=lambda law: (
             None if law.friction_angle else ("direct_effect", "needs a friction_angle")
@@ -151,8 +150,8 @@ PARTS = (
 
 
 def under(layer: SoftLayer, joints: JointLaw) -> SoftLayer:
-    """Return a layer with missing keys taken from [joints], except its K_n and what contradicts its
-    own keys."""
+    """Return a layer with absent keys taken from [joints], except K_n and keys that contradict its
+    own."""
     own = {key for key in JointLaw.model_fields if getattr(layer, key) is not None}
     left = own | {"normal_stiffness"}
     for part in PARTS:

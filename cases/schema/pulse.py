@@ -1,5 +1,5 @@
-"""Pulses, which are histories or shapes in time, and what has them: the load of a pillar, plane
-waves, pressures, forces and a shaken base."""
+"""Pulses (time histories) and the loads that follow them: the load of a pillar, plane waves,
+pressures, forces and shaken bases."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -45,7 +45,7 @@ KEYS_OF_LOADS: dict[str, tuple[set[str], set[str]]] = {
     "force": ({"at", "direction"}, set()),
     "base": ({"side", "direction"}, set()),
 }
-LEAST_ACROSS = 1e-9  #: one less the cosine between the direction of a wave and its polarisation
+LEAST_ACROSS = 1e-9  #: least 1 - |cosine| between the direction of a wave and its polarisation
 QUANTITIES = {"pressure": {"stress"}, "force": {"force"}, "base": {"velocity", "acceleration"}}
 
 
@@ -56,10 +56,10 @@ class Pulse(Table):
     #: 1.6 `cycles`; triangle: a blast; table: linear interpolation of the samples of a file
     shape: Literal["sine", "half-sine", "ricker", "gabor", "triangle", "step", "table"]
     amplitude: Number  #: Pa, m/s or m/s2 by `quantity`; a factor on the history for "table"
-    #: stress: on the start, of which a quiet or matched one takes half; incident-stress: of the
-    #: wave that enters such a start, applied as twice this stress; velocity, acceleration: of the
-    #: base under a fixed start, or of the wave that enters a quiet start, applied as the stress
-    #: 2 rho c times its velocity
+    #: stress: on the start; a quiet or matched start absorbs half; incident-stress: of the wave
+    #: that enters such a start, applied as twice this stress; velocity, acceleration: of the base
+    #: under a fixed start, or of the wave that enters a quiet start, applied as the stress 2 rho c
+    #: times its velocity
     quantity: Literal["stress", "incident-stress", "velocity", "acceleration"] = "stress"
     period: Positive | None = None  #: s; for sine, half-sine, ricker and gabor
     #: sine: default 1; gabor: cycles within two standard deviations of the envelope
@@ -102,8 +102,8 @@ class Pulse(Table):
 
     @property
     def time_scale(self) -> float | None:
-        """The period, or that of the half sine that lasts as long as a triangle, s; None of a step
-        or a record."""
+        """The period, s, for a triangle that of a half sine of the same length; None for a step or
+        record."""
         if self.rise is not None and self.decay is not None:
             return 2 * (self.rise + self.decay)
         return self.period
@@ -160,12 +160,11 @@ class Wave(Pulse):
     amplitude: Number  #: Pa or m/s by `quantity`; a factor on the history for "table"
     #: stress: on the wave front, compression positive for P; velocity: of the particles
     quantity: Literal["stress", "velocity"] = "stress"  # type: ignore[assignment]
-    #: P: particles move along the direction; S: normal to it, to its left, in space as
-    #: `polarisation`; SV: S, in space polarised in the vertical plane of its direction
+    #: P: particles move along the direction; S: to its left, in space along `polarisation`; SV: S,
+    #: in space polarised in the vertical plane of its direction
     kind: Literal["P", "S", "SV"]
     direction: UnitVector  #: x, y, in space x, y, z: of propagation
-    #: x, y, z: of particle motion of an S wave in space, of which the part across the direction
-    #: counts
+    #: x, y, z: of particle motion of an S wave in space; its part normal to the direction counts
     polarisation: UnitVector | None = None
     #: m, where the pulse begins at t = 0; absent: the first corner of the domain that it reaches
     through: Point | None = None
@@ -208,12 +207,12 @@ class PlaneLoad(Pulse):
     #: base: motion of a fixed side, or of the wave that enters a quiet side, applied as the stress
     #: 2 rho c times its velocity
     kind: Literal["pressure", "force", "base"]
-    side: Side | None = None  #: loaded by a pressure, or moved as a base
-    opening: Annotated[int, Field(ge=0)] | None = None  #: loaded by a pressure, counted from 0
+    side: Side | None = None  #: under a pressure, or moved as a base
+    opening: Annotated[int, Field(ge=0)] | None = None  #: under a pressure, counted from 0
     #: m, in the plane two points of the boundary: the pressure acts only between them; around an
     #: opening counter-clockwise from the first to the second, unless both are on one face
     between: Annotated[list[Point], Two] | None = None
-    at: Point | None = None  #: m, where a force acts; on a joint on its sides alike
+    at: Point | None = None  #: m, where a force acts; on a joint its sides share it equally
     #: x, y, in space x, y, z: of a force or of the motion of a base
     direction: UnitVector | None = None
 

@@ -66,10 +66,10 @@ class Boundaries(Sides):
 
 
 class GravityOfRock(Gravity):
-    """A body force. Fixed and roller sides bear the weight, and quiet ones, which exert beside
-    their dashpots what held sides would at rest: below the rock (within 45 degrees) held in all
+    """A body force. Fixed and roller sides bear the weight; quiet sides do too, with the static
+    reaction of a held side beside their dashpots: below the rock (within 45 degrees) in all
     directions, beside it along their normal. A quiet side above the rock bears the in-situ stress
-    alone."""
+    only."""
 
     direction: UnitVector = Field(default=[0.0, -1.0])  #: x, y, in space x, y, z and [0, 0, -1]
 
@@ -106,14 +106,14 @@ class InSituStress(Table):
 
     @property
     def words(self) -> str:
-        """The stress in words."""
+        """The stress as text."""
         keys = ("xx", "yy", "xy") if self.zz is None else ("xx", "yy", "zz", "xy", "yz", "xz")
         return ", ".join(f"{key} {getattr(self, key):.4g}" for key in keys) + " Pa"
 
     def largest(self, excavated: bool) -> float:
-        """Return the largest principal stress s1, not below zero, or with the least one 3 s1 - s2
-        at the wall of a circular opening (Kirsch), Pa; at corners of others it is more in places.
-        """
+        """Return the largest principal stress s1, at least zero, Pa; if excavated 3 s1 - s2 with
+        the least one s2, as at the wall of a circular opening (Kirsch); other openings can exceed
+        it at corners."""
         low, *_, high = np.linalg.eigvalsh(self.tensor)
         return max(0.0, float(3 * high - low if excavated else high))
 
@@ -155,7 +155,7 @@ class NumericsOfRock(Numerics):
     continuum: ContinuumOfRock = ContinuumOfRock()  # type: ignore[assignment]
 
 
-#: Name, for joint sets, of rock outside all regions.
+#: Name of the rock outside all regions, for joint sets.
 REST = "rock"
 
 
@@ -186,7 +186,7 @@ class Region(Inclined):
         return self
 
     def rock(self, rest: IntactRock) -> IntactRock:
-        """Return the region's rock, given that of the rest."""
+        """Return the region's rock; absent keys come from the rest."""
         own = {key: getattr(self, key, None) for key in IntactRock.model_fields}
         return rest.model_copy(update={k: v for k, v in own.items() if v is not None})
 
@@ -207,9 +207,9 @@ class RockMass(SceneBase):
     time: Time
     numerics: NumericsOfRock = NumericsOfRock()
     record: RecordOfRock
-    #: bounds on the relative L2 misfit of pairs, that of the worst waveform. `a ~ b: velocity`: of
-    #: the worst of one quantity of the results; `a ~ b: PPV`, `a ~ b: peak stress`: on the relative
-    #: difference of peaks, at the receiver where it is largest
+    #: largest relative L2 misfit of each pair of solvers, over all waveforms; `a ~ b: velocity`:
+    #: over those of one quantity; `a ~ b: PPV`, `a ~ b: peak stress`: largest relative difference
+    #: of peaks, over all receivers
     expect: dict[Pair, Positive] = {}
     name: str = ""  #: of the variant; empty for the base scene
 
@@ -222,26 +222,26 @@ class RockMass(SceneBase):
 
     @property
     def in_space(self) -> bool:
-        """Whether the scene is one in space, not in the plane."""
+        """Whether the scene is in space, not in the plane."""
         return self.domain.dimension == 3
 
     @property
     def in_plane(self) -> bool:
-        """Whether the scene is one in the plane."""
+        """Whether the scene is in the plane."""
         return self.domain.dimension == 2
 
     @property
     def mesh_path(self) -> Path | None:
-        """The file of the rock's cells or blocks, None where they are built."""
+        """The file of the rock's cells or blocks; None if they are built."""
         return self.domain.mesh_path
 
     @property
     def reach(self) -> float:
-        """The largest distance in it, m."""
+        """The diagonal of the domain's bounding box, m."""
         return float(np.linalg.norm(self.domain.extent))
 
     @property
     def excavated(self) -> bool:
-        """Whether openings have been excavated in rock under a prestress: the scene then starts
-        from the state that this leaves."""
+        """Whether openings are excavated in rock under a prestress; the scene then starts from the
+        resulting state."""
         return self.prestress is not None and bool(self.domain.holes)

@@ -1,8 +1,7 @@
-"""The scene vocabulary: everything that can be said about a jointed rock pillar and its load.
+"""Models of a pillar scene and of what all scenes share, one per TOML table.
 
-One pydantic model per TOML table. SI units throughout; y runs along the pillar from the loaded
-end, x and z across. The reference scene is that of Guo & Li (2002), Chin. J. Rock Mech. Eng.
-21(8), 1124-1129.
+SI units; y runs along the pillar from the loaded end, x and z across. The reference scene is that
+of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124-1129.
 """
 
 from pathlib import Path
@@ -32,15 +31,15 @@ from jointwave.cases.schema.values import Pair, Positive, Table, Words
 
 
 class SceneBase(Table):
-    """A scene: its title, its times, and what is asked of it whichever way it is written.
+    """What pillars and rock masses share: title, time, loads and sides.
 
     Attributes
     ----------
-    kind : in words.
-    is_column : whether it is a row of blocks along y with free sides, whose sections have an axial
-        stress, not a body in two or three dimensions.
-    law_tables, source_tables : which hold joint laws, and what acts over time. side_table : which
-        holds the conditions of its sides.
+    kind : as text.
+    is_column : whether it is a row of blocks along y with free sides and an axial stress in each
+        section, not a body in two or three dimensions.
+    law_tables, source_tables : tables of joint laws, and of loads and waves. side_table : table of
+        boundary conditions.
     """
 
     title: Words  #: used in tables and figures
@@ -53,26 +52,26 @@ class SceneBase(Table):
     _where: str = PrivateAttr(default="")
 
     def __repr__(self) -> str:
-        """Return kind, file and variant: all tables would be pages."""
+        """Return kind, file and variant, as all tables would fill pages."""
         return f"{type(self).__name__}({self.where!r})"
 
     @property
     def where(self) -> str:
-        """The file and variant that the scene was read from, else its title: for messages."""
+        """File and variant of the scene, else its title, for messages."""
         return self._where or self.title
 
     @property
     def laws(self) -> dict[str, JointLaw]:
-        """The joint laws by their tables, such as `joint_sets[0]`."""
+        """The joint laws by table, such as `joint_sets[0]`."""
         return {key: one for table in self.law_tables for key, one in self.entries(table)}
 
     @property
     def sides(self) -> dict[str, str]:
-        """The condition of each side by its key, such as `ends.start`."""
+        """The boundary condition of each side by key, such as `ends.start`."""
         return {f"{self.side_table}.{side}": held for side, held in getattr(self, self.side_table)}
 
     def entries(self, table: str) -> list[tuple[str, Any]]:
-        """Return what a table holds by its key: each of a list, none of a table it cannot have."""
+        """Return the entries of a table by key: one for each of a list, none if it is absent."""
         held = getattr(self, table, [])
         if isinstance(held, Table):
             return [(table, held)]
@@ -80,12 +79,12 @@ class SceneBase(Table):
 
     @property
     def sources(self) -> dict[str, Any]:
-        """Everything that acts over time, by its table."""
+        """All loads and waves, by table."""
         return {key: one for table in self.source_tables for key, one in self.entries(table)}
 
     @property
     def pulses(self) -> tuple[Any, ...]:
-        """Everything that acts over time."""
+        """All loads and waves."""
         return tuple(self.sources.values())
 
     @property
@@ -95,7 +94,7 @@ class SceneBase(Table):
 
     @property
     def pushes(self: Any) -> list[Any]:
-        """The loads that are forces on the rock, those of compliant bases among them."""
+        """The loads that are forces on the rock, including those of compliant bases."""
         return [one for one in self.loads if not self.shakes(one)]
 
     def shakes(self: Any, load: Any) -> bool:
@@ -127,9 +126,9 @@ class Scene(SceneBase):
     time: Time
     numerics: Numerics = Numerics()
     record: Record
-    #: bounds on the relative L2 misfit of pairs, that of the worst waveform. `a ~ b: velocity`: of
-    #: the worst of one quantity of the results; `a ~ b: PPV`, `a ~ b: peak stress`: on the relative
-    #: difference of peaks, at the receiver where it is largest
+    #: largest relative L2 misfit of each pair of solvers, over all waveforms; `a ~ b: velocity`:
+    #: over those of one quantity; `a ~ b: PPV`, `a ~ b: peak stress`: largest relative difference
+    #: of peaks, over all receivers
     expect: dict[Pair, Positive] = {}
     name: str = ""  #: of the variant; empty for the base scene
 
@@ -138,7 +137,7 @@ class Scene(SceneBase):
     law_tables: ClassVar[tuple[str, ...]] = ("joints", "soft_layers")
     source_tables: ClassVar[tuple[str, ...]] = ("load",)
     side_table: ClassVar[str] = "ends"
-    #: As of a rock mass that has none.
+    #: The same attributes as a rock mass without these.
     in_plane: ClassVar[Literal[False]] = False
     in_space: ClassVar[Literal[False]] = False
     excavated: ClassVar[Literal[False]] = False
@@ -148,37 +147,37 @@ class Scene(SceneBase):
 
     @property
     def rotation(self) -> str:
-        """The rotations of blocks that are computed: "none", "small" or "finite"."""
+        """Block rotations that are computed: "none", "small" or "finite"."""
         return self.motion.rotation
 
     @property
     def mesh_path(self) -> Path | None:
-        """The file of the rock's cells, None where they are built."""
+        """The file of the rock's cells; None if they are built."""
         return self.numerics.continuum.mesh_path
 
     @property
     def reach(self) -> float:
-        """Its length, m."""
+        """Length of the pillar, m."""
         return self.pillar.length
 
     @property
     def loads(self) -> list[Load]:
-        """The load, where there is one."""
+        """The load, if there is one."""
         return [self.load] if self.load.amplitude else []
 
     @property
     def shakes_base(self) -> bool:
-        """Whether the load is the motion of a rigid base, on which the start is fixed."""
+        """Whether the load is the motion of a rigid base under a fixed start."""
         return self.shakes(self.load)
 
     @property
     def boundaries(self) -> Ends:
-        """The conditions of its sides, which are its ends."""
+        """The boundary conditions of the ends."""
         return self.ends
 
     @property
     def bears(self) -> tuple[bool, bool]:
-        """Whether the start and the end, which waves pass, bear what gravity puts on them."""
+        """Whether the absorbing start and end bear the weight."""
         if self.gravity is None or not self.gravity.acceleration:
             return False, False
         kinds, along = (self.ends.start, self.ends.end), self.gravity.direction[1]
@@ -192,14 +191,13 @@ class Scene(SceneBase):
 
     @property
     def parts(self) -> list[Part]:
-        """The parts between which rock or joints differ, from the loaded end on: one without
-        segments."""
+        """The parts with one rock each, from the loaded end on; one part without segments."""
         return parts_of(self.pillar, self.segments)
 
     def alone(self, part: Part) -> "Scene":
-        """Return a part as a scene of one rock without soft layers; it is not checked."""
+        """Return a part as an unchecked scene of one rock without soft layers."""
         update: dict[str, Any] = {"segments": [], "soft_layers": [], "scatter": None}
-        side, length = self.pillar.side, part.stop - part.start  # one block will do
+        side, length = self.pillar.side, part.stop - part.start  # may be a single block
         block = length / part.blocks
         update["pillar"] = Pillar.model_construct(length=length, side=side, block=block)
         if part.segment is not None:
@@ -209,10 +207,10 @@ class Scene(SceneBase):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether all blocks are equal, and all joints except the soft layers."""
+        """Whether all blocks are equal, and all joints except soft layers."""
         return not self.segments and self.scatter is None
 
     @property
     def layers(self) -> list[SoftLayer]:
-        """The soft layers, each with what it takes from [joints]."""
+        """The soft layers, with absent keys taken from [joints]."""
         return [under(layer, self.joints) for layer in self.soft_layers]

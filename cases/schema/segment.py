@@ -1,4 +1,4 @@
-"""Segments of a pillar: lengths of other rock, joints or block thickness than the rest."""
+"""Segments of a pillar whose rock, joints or block thickness differ from the rest."""
 
 from typing import Annotated, NamedTuple
 
@@ -28,7 +28,7 @@ from jointwave.cases.schema.values import (
 )
 
 CLOSE = 1e-6  # of a block: rounding of lengths
-#: Keys that an intact segment does not take.
+#: Keys that an intact segment cannot have.
 OF_JOINTED = (*SPEEDS, *CONSTANTS, "normal_stiffness", "damping_ratio")
 
 
@@ -65,11 +65,11 @@ class Segment(Table):
 
     @property
     def is_other_mass(self) -> bool:
-        """Whether it gives the elastic constants of its rock mass."""
+        """Whether the segment gives elastic constants of its rock mass."""
         return self.p_speed is not None or self.equivalent_modulus is not None
 
     def rock(self, rest: Rock) -> Rock:
-        """Return the segment's rock, given that of the rest of the pillar."""
+        """Return the segment's rock; absent keys come from the rest of the pillar."""
         own = {k: v for k in Rock.model_fields if (v := getattr(self, k, None)) is not None}
         if self.is_other_mass or not self.joints:
             own = dict.fromkeys((*SPEEDS, *CONSTANTS)) | own
@@ -80,7 +80,7 @@ class Segment(Table):
         return rock.model_copy(update=intact)
 
     def law(self, rest: Joints) -> Joints:
-        """Return the law of the segment's joints, given that of the rest of the pillar."""
+        """Return the joint law of the segment; absent keys come from the rest of the pillar."""
         keys = ("normal_stiffness", "damping_ratio")
         own = {key: value for key in keys if (value := getattr(self, key)) is not None}
         if self.is_other_mass or not self.joints:
@@ -91,8 +91,8 @@ class Segment(Table):
 
 
 class Part(NamedTuple):
-    """A part of a pillar that has one rock: from start to stop (m), its number of blocks, and the
-    index of its segment, None of what [rock] describes."""
+    """A part of a pillar with one rock: start and stop (m), number of blocks, and index of its
+    segment (None if [rock] applies)."""
 
     start: float
     stop: float
@@ -101,9 +101,9 @@ class Part(NamedTuple):
 
 
 def parts_of(pillar: Pillar, segments: list[Segment]) -> list[Part]:
-    """Return the parts of a pillar from its loaded end on: one without segments.
+    """Return the parts of a pillar from its loaded end on; one part without segments.
 
-    Raises a contradiction where segments overlap or blocks do not divide them.
+    Raises a contradiction if segments overlap or blocks do not divide them.
     """
     found, at = list[Part](), 0.0
     if not segments:

@@ -22,7 +22,7 @@ SPEEDS = ("p_speed", "s_speed")
 CONSTANTS = ("equivalent_modulus", "equivalent_poisson")
 PAIRS = " and ".join(SPEEDS) + ", or " + " and ".join(CONSTANTS)
 
-LEAN = 0.5**0.5 - 1e-9  # cosine of 45 degrees: gravity presses onto a side within this angle
+LEAN = 0.5**0.5 - 1e-9  # cosine of 45 degrees: a side within this angle of gravity bears weight
 
 MOST_BLOCKS = 10_000_000  # about 0.4 kB per block: the memory of one machine
 
@@ -34,9 +34,9 @@ class Pillar(Table):
     side: Positive  #: m, side of the square section
     #: m, block thickness d = joint spacing S; with `joints`: at most, or absent
     block: Positive
-    #: m, places of joints of `joints.normal_stiffness` in intact rock, which replace those at every
+    #: m, places of joints of `joints.normal_stiffness` in intact rock, instead of one at every
     #: `block`; read as `segments` without joints and `soft_layers`. Blocks between them are equal;
-    #: absent `block`: 40 of them a wavelength of the load's highest frequency
+    #: absent `block`: 40 blocks per wavelength of the load's highest frequency
     joints: list[Positive] | None = None
 
     @model_validator(mode="after")
@@ -69,7 +69,7 @@ class Rock(Attenuating):
     p_speed: Positive | None = None  #: m/s, unbounded rock mass
     s_speed: Positive | None = None  #: m/s
     equivalent_modulus: Positive | None = None  #: Pa, E_eq of the rock mass
-    #: of the rock mass; beside `joints.normal_stiffness` absent: intact_poisson
+    #: of the rock mass; absent, with `joints.normal_stiffness`: intact_poisson
     equivalent_poisson: Poisson | None = None
     intact_modulus: Positive | None = None  #: Pa, E of the blocks; for the jointed continuum
     intact_poisson: Poisson = 0.25  #: of the blocks
@@ -85,9 +85,9 @@ class Rock(Attenuating):
 
 
 def check_given_once(table: str, rock: Any, stiffness: str, law: Any) -> None:
-    """Refuse joints' stiffness beside the constants of the rock mass that it decides.
+    """Refuse a joint stiffness together with the constants of the rock mass that it sets.
 
-    table, stiffness : the tables that hold them, as messages name them.
+    table, stiffness : the tables that hold them, for messages.
     """
     for key, twice in (
         ("normal_stiffness", [*SPEEDS, CONSTANTS[0]]),
@@ -103,12 +103,12 @@ def check_given_once(table: str, rock: Any, stiffness: str, law: Any) -> None:
 
 
 def given_pairs(table: Table) -> list[list[str]]:
-    """Return which speeds and which elastic constants of the rock mass a table gives."""
+    """Return the speeds and the elastic constants of the rock mass that a table gives."""
     return [[k for k in pair if getattr(table, k) is not None] for pair in (SPEEDS, CONSTANTS)]
 
 
 def wrong_speeds(table: Any) -> str | None:
-    """Return why a table's p_speed does not fit its s_speed; None if it does."""
+    """Return why a table's p_speed and s_speed are inconsistent; None if they are not."""
     if table.p_speed and table.s_speed and table.p_speed**2 <= 4 / 3 * table.s_speed**2:
         return f"must exceed sqrt(4/3) times s_speed = {table.s_speed:g} (positive bulk modulus)"
     return None
@@ -157,8 +157,8 @@ class Ends(Sides):
 
 
 class Gravity(Table):
-    """A body force. Fixed ends bear the weight, and quiet and matched ones unless gravity pulls the
-    pillar off them: beside their dashpots they exert what fixed ones would at rest."""
+    """A body force. Fixed ends bear the weight; quiet and matched ends do too, with the static
+    reaction of a fixed end beside their dashpots, unless gravity pulls the pillar off them."""
 
     direction: Direction  #: x, y, z
     acceleration: NonNegative = 9.81  #: m/s2
@@ -177,11 +177,11 @@ class Prestress(Table):
 
     @property
     def words(self) -> str:
-        """The stress in words."""
+        """The stress as text."""
         return f"{self.normal:.4g} Pa"
 
     def largest(self, excavated: bool) -> float:
-        """Return its magnitude, Pa."""
+        """Return the magnitude of the stress, Pa."""
         return abs(self.normal)
 
 
@@ -192,7 +192,7 @@ class Time(Table):
 
 
 class Recording(Table):
-    """When results are recorded, beside those of receivers."""
+    """Sampling interval, snapshots and energy ledger."""
 
     interval: Positive | None = None  #: s; default: period / 200, or duration / 2000
     fields: Positive | None = None  #: s between snapshots of the whole body; absent: none
@@ -212,7 +212,7 @@ class BlockStepping(Table):
 
     step_fraction: Positive = 0.2  #: of the critical step
     allow_unstable: bool = False  #: allow a step above the critical one
-    #: out-of-balance force ratio of the static state; absent: less where small loads would feel it
+    #: out-of-balance force ratio of the static state; absent: smaller where loads are small
     static_tolerance: Positive = 1e-8
     threads: Annotated[int, Field(ge=1, le=1024)] | None = None  #: absent: by the number of blocks
 
@@ -258,15 +258,15 @@ class ContinuumNumerics(ElementStepping):
 
     @property
     def mesh_path(self) -> Path | None:
-        """The file `mesh`, found relative to the scene's; None where the mesh is built."""
+        """The file `mesh`, relative to the scene's folder; None if the mesh is built."""
         return self._mesh_path
 
 
 class Numerics(Table):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
-    #: joints may move by more than 2 % of a block, and blocks meet others than their neighbours,
-    #: though contacts stay those of the start; else such a run stops
+    #: joints may move by more than 2 % of a block; else such a run stops. Contacts stay those of
+    #: the start, even where blocks would touch new neighbours
     allow_large_motion: bool = False
     dem: DemNumerics = DemNumerics()
     continuum: ContinuumNumerics = ContinuumNumerics()

@@ -1,4 +1,4 @@
-"""Types of values in a scene file, and the message for a value that does not fit."""
+"""Types of values in a scene file, and messages for invalid values."""
 
 import re
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ CONTROL = re.compile(
 
 
 def _words(text: str) -> str:
-    """Refuse a text that no terminal, page or drawing should be given."""
+    """Refuse a text that is unsafe in a terminal, page or drawing."""
     if found := CONTROL.search(text):
         allowed = f"must not contain the control character U+{ord(found[0]):04X}"
         raise PydanticCustomError("words", "{allowed}", {"allowed": allowed})
@@ -34,7 +34,7 @@ def _magnitude(value: float) -> float:
 
 
 def _pair(text: str) -> str:
-    """Check one key of [expect], whose names are those of whoever solves scenes."""
+    """Check the form of a key of [expect]; `cases` does not know the solvers' names."""
     one, _, other = text.partition(" ~ ")
     if not one or not other or one == other:
         raise PydanticCustomError("pair", "must be 'a ~ b', two solvers by name")
@@ -49,19 +49,19 @@ def _unit(vector: list[float]) -> list[float]:
 
 
 def _increasing(pair: list[float]) -> list[float]:
-    """Refuse the start and end of a span that is empty or runs backwards."""
+    """Refuse a start and end that are not increasing."""
     if not pair[0] < pair[1]:
         raise PydanticCustomError("increasing", "must be two increasing numbers")
     return pair
 
 
 def dimension(info: ValidationInfo) -> int:
-    """Return in how many dimensions the scene is that a value belongs to: 2, or 3 in space."""
+    """Return the dimension of the scene that a value belongs to: 2, or 3 in space."""
     return int((info.context or {}).get("dimension", 2))
 
 
 def _per_axis(vector: list[float], info: ValidationInfo) -> list[float]:
-    """Refuse vectors of another dimension than the domain's."""
+    """Refuse vectors whose dimension is not the domain's."""
     if len(vector) != dimension(info):
         where = "in space" if dimension(info) == 3 else "in the plane"
         context = {"allowed": f"{dimension(info)} numbers: the domain is {where}"}
@@ -95,16 +95,16 @@ class Table(BaseModel):
     )
 
     def gives(self, key: str) -> bool:
-        """Return whether a key has another value than where it is absent."""
+        """Return whether a key differs from its default."""
         default = type(self).model_fields[key].get_default(call_default_factory=True)
         return bool(getattr(self, key) != default)
 
 
 def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
-    """Return the error for a value that does not fit the rest of the scene, under its full key, or
-    the rest of its own table, wherever that stands, under `.key`.
+    """Return the error for a value that contradicts the rest of the scene (full key), or of its own
+    table (`.key`).
 
-    The reader puts the table's path before such a key, and for `{table}` in what is allowed.
+    The reader prefixes the table's path to `.key`, and inserts it for `{table}` in what is allowed.
     """
     return PydanticCustomError(
         "contradiction", "{allowed}", {"allowed": allowed, "key": key, "found": value}
@@ -114,8 +114,8 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
 def check_dimension(
     table: Table, info: ValidationInfo, space: tuple[str, ...] = (), plane: tuple[str, ...] = ()
 ) -> bool:
-    """Refuse the keys of a table that are for scenes in space in the plane, and the reverse; return
-    whether the scene is in space."""
+    """Refuse keys of a table that have no meaning in the scene's dimension; return whether the
+    scene is in space."""
     in_space = dimension(info) == 3
     for key in plane if in_space else space:
         if table.gives(key):
@@ -125,8 +125,8 @@ def check_dimension(
 
 
 def named_file(info: ValidationInfo, key: str, name: str) -> Path:
-    """Return the path of a file that a key names, relative to the scene's folder. It may lie
-    elsewhere where the user gave this key, or a table that holds it, beside the scene."""
+    """Return the path of a file named by a key, relative to the scene's folder. It may lie outside
+    if the user gave this key, or a table that holds it, directly."""
     context = info.context or {}
     asked = any(f"{key}.".startswith(f"{given}.") for given in context.get("asked", ()))
     try:
@@ -136,9 +136,9 @@ def named_file(info: ValidationInfo, key: str, name: str) -> Path:
 
 
 def check_keys(table: Table, by: str, known: Mapping[str, tuple[set[str], set[str]]]) -> None:
-    """Refuse a table that lacks a key which its kind needs, or has one of other kinds alone.
+    """Refuse a table that lacks a key that its kind needs, or has one of other kinds only.
 
-    by : the key that names the kind. known : keys that each kind needs, and that it may have.
+    by : key that names the kind. known : for each kind, required and optional keys.
     """
     kind = getattr(table, by)
     needed, taken = known[kind]
