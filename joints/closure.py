@@ -7,34 +7,34 @@ A joint of initial stiffness k_ni and maximum closure d_m that closes by d carri
 (Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20, 1983; Barton, Bandis & Bakhtar, 22,
 1985). It unloads along the same curve, and opens with k_ni.
 
-Between rigid blocks the compliance c of the rock is in series with it. Of D = d + c sigma follows
+Between rigid blocks the compliance c of the rock is in series with the joint: D = d + c sigma, so
 
     c sigma^2 + (c s_m + d_m - D) sigma - s_m D = 0,
 
-whose only root with the sign of D is the traction, for any D. For a joint between deformable rock
-c is a millionth of its own compliance, so that it is at most a million times stiffer than
-initially where it would close beyond d_m. Beside rock that has its joint's compliance already, c is
-negative, and the lesser root is the traction up to the stress at which d sigma / dD is infinite.
+and the only root with the sign of D is the traction. Between deformable rock c is a millionth of
+the joint's own compliance, which limits the stiffness near d_m to a million times the initial one.
+If the rock already includes the joint's compliance, c is negative, and the smaller root is the
+traction up to the stress at which d sigma / dD is infinite.
 """
 
 from math import log1p, sqrt
 
 from jointwave.joints.formula import formula
 
-FACES = 1e-6  # of the joint's own compliance: the remainder when it is closed
-SMALL = 1e-3  # traction over s_m below which the energy is a series: its terms cancel
+FACES = 1e-6  # compliance of a closed joint, over its initial one
+SMALL = 1e-3  # traction over s_m below which the energy is a series, to avoid cancellation
 
 
 @formula
 def closing(law):
-    """Return c, m/Pa, and s_m, Pa, of a law."""
+    """Return c, m/Pa, and s_m, Pa."""
     own = 1.0 / law.normal_stiffness - law.rock_compliance
     return law.rock_compliance + FACES * own, law.maximum_closure / ((1.0 - FACES) * own)
 
 
 @formula
 def closure_traction(law, closure):
-    """Return sigma (Pa) of a closure D >= 0 (m)."""
+    """Return sigma (Pa) at a closure D >= 0 (m)."""
     c, s_m = closing(law)
     b = c * s_m + law.maximum_closure - closure
     root = sqrt(b * b + 4.0 * c * s_m * closure)
@@ -43,7 +43,7 @@ def closure_traction(law, closure):
 
 @formula
 def closure_under(law, traction):
-    """Return D (m) of sigma >= 0 (Pa)."""
+    """Return D (m) at sigma >= 0 (Pa)."""
     c, s_m = closing(law)
     return c * traction + law.maximum_closure * traction / (s_m + traction)
 

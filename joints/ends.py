@@ -1,13 +1,13 @@
-"""A dashpot behind a spring: what absorbs a wave at the end of a row of joints.
+"""A dashpot behind a spring: it absorbs waves at the end of a row of joints.
 
-The spring is the half of a joint, or of a block and its joint, that reaches from the last mass to
-the end face; the massless face is carried by the dashpot Z of the rock beyond, or by a rigid wall.
-With the spring's closure w, the velocity v of the mass and the reaction f (compression positive)
+The spring, half of a joint or of a block and its joint, joins the last mass to the massless end
+face, which rests on the dashpot Z of the rock beyond, or on a rigid wall. With the spring's closure
+w, the velocity v of the mass and the reaction f (compression positive)
 
     f = k (w + eta dw/dt),   dw/dt = v - f / Z,   so   f = share k (w + eta v),
     share = 1 / (1 + k eta / Z).
 
-w is advanced with the mean of f over the step, which keeps second order and adds no bound on it.
+w is advanced with the mean of f over the step: second order, without a bound on the step.
 """
 
 from math import inf
@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 
 
 class HalfSpring(NamedTuple):
-    """One such end, or arrays of several, for a given step.
+    """An end, or arrays of several ends, for a given step.
 
     stiffness, viscosity : of f = stiffness w + viscosity v, N/m and N s/m.
     decay, gain : of w <- decay w + gain v, with v half a step later; gain in s.
-    critical_stiffness : what the end adds to the mass's stiffness at the critical step, N/m. In
-        the mode that alternates at every step the face stands still, but for its share.
+    critical_stiffness : of the mass at the critical step, N/m: in the mode that alternates at every
+        step the face hardly moves.
     """
 
     stiffness: Any
@@ -31,10 +31,8 @@ class HalfSpring(NamedTuple):
 
 
 def half_spring(k: Any, eta: Any, z: Any = inf, dt: float = 0.0) -> HalfSpring:
-    """Return the end of spring k (N/m), time constant eta (s), dashpot z (N s/m) at step dt (s).
-
-    An infinite z is a rigid wall.
-    """
+    """Return the end of spring k (N/m), time constant eta (s), dashpot z (N s/m; infinite: a rigid
+    wall) at step dt (s)."""
     share = 1 / (1 + k * eta / z)
     lag = dt * k * share / (2 * z)
     return HalfSpring(

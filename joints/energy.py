@@ -7,11 +7,7 @@ from jointwave.joints.normal import spring_traction
 
 @formula
 def elastic_energy(law, parts, gap, opening, ex, ez):
-    """Return the energy in the springs, half of traction times elastic displacement where they are
-    linear.
-
-    gap, opening : m; ex, ez : elastic slip, m.
-    """
+    """Return the energy in the springs; gap, largest opening, and elastic slip ex, ez in m."""
     t = spring_traction(law, parts, gap, opening)
     energy = -0.5 * t * gap
     if parts.closure and gap < 0.0:
@@ -23,10 +19,10 @@ def elastic_energy(law, parts, gap, opening, ex, ez):
 
 @formula
 def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
-    """Return what sliding takes in a step of slip dx, dz: the mean spring force times the slide.
+    """Return the work of friction in a step of slip dx, dz: the mean spring traction times sliding.
 
-    The slide is the slip less the change of elastic slip. Together with the change of
-    `elastic_energy` this is the trapezoid rule of leapfrog's ledger, exactly.
+    Sliding is slip less the change of elastic slip. The sum of this and of the change of
+    `elastic_energy` is exactly the trapezoid rule of leapfrog's ledger.
     """
     along_x = (ex_old + ex) * (dx - (ex - ex_old))
     along_z = (ez_old + ez) * (dz - (ez - ez_old))
@@ -35,10 +31,10 @@ def friction_work(law, ex_old, ez_old, ex, ez, dx, dz):
 
 @formula
 def lift_work(law, parts, gap_old, gap, opening, up):
-    """Return what a lift by `up` (m) in a step puts into the springs and the rock, of the work that
-    sliding takes: the mean traction of the normal spring times the lift.
+    """Return the work of dilation in a step that goes into the springs and the rock: the mean
+    traction of the normal spring times the lift `up` (m).
 
-    gap_old, gap : less the lift, m, before and after the step. opening : the largest so far, m.
+    gap_old, gap : less the dilation, before and after the step, m. opening : the largest so far, m.
     """
     old = spring_traction(law, parts, gap_old, opening)
     return 0.5 * (old + spring_traction(law, parts, gap, opening)) * up
@@ -46,9 +42,9 @@ def lift_work(law, parts, gap_old, gap, opening, up):
 
 @formula
 def fracture_energy_spent(law, opening):
-    """Return what opening has spent: the area under the softening curve less what unloads.
+    """Return the fracture energy spent: the area under the softening curve less elastic energy.
 
-    With the linear curve this is G_c (k - w_0) / (w_c - w_0), between zero and G_c = s_t w_c / 2.
+    For the linear curve this is G_c (k - w_0) / (w_c - w_0), between zero and G_c = s_t w_c / 2.
     """
     first = law.tensile_strength / law.normal_stiffness
     whole = 0.5 * law.tensile_strength * law.critical_opening

@@ -1,8 +1,8 @@
-"""The law of a joint: its parameters, its parts, and the complete law in one call.
+"""The joint law: its parameters, its parts, and the complete law in one call.
 
-Every formula here is plain Python that numba compiles into the kernels that call it. A kernel takes
-the parameters as one table, and `LawFlags`, a tuple of booleans, as a constant: absent parts are
-eliminated when the kernel is compiled. A new parameter is a field of `Law`, and its formula.
+Every formula here is plain Python that numba compiles into kernels. A kernel takes the parameters
+as one table and `LawFlags`, a tuple of booleans, as a constant, so absent parts are not compiled.
+To add a parameter, add a field of `Law` and its formula.
 
 Per unit area: traction in Pa, compression positive; gap in m, positive when open, so that
 penetration is negative. The shear traction acts on the right block.
@@ -39,10 +39,10 @@ class Law(NamedTuple):
     dynamic_friction, weakening_distance : tan(phi) after weakening, its path D, m; None without.
     dilation, dilation_distance : tan(psi), and the path over which it falls to 0, m; None without.
     direct_effect, evolution_effect, critical_slip_distance, reference_rate, initial_state : a, b,
-        D_c, m, V_0, m/s, and theta_0, s, of rate-and-state friction; None without, and a = 0 for
-        joints without it among joints with it.
+        D_c, m, V_0, m/s, and theta_0, s, of rate-and-state friction; None without. A joint without
+        it among joints with it has a = 0.
 
-    Joints without a strength that others have get `joints.shear.UNLIMITED`.
+    A joint without a strength that other joints have gets `joints.shear.UNLIMITED`.
     """
 
     normal_stiffness: Any
@@ -68,19 +68,19 @@ class Law(NamedTuple):
     initial_state: Any = None
 
 
-#: Rows of the table that act in motion only: static states are without them, with friction mu_0.
+#: Rows of the table that a static state sets to zero; its friction is mu_0.
 IN_MOTION = [
     Law._fields.index(name) for name in ("normal_viscosity", "shear_viscosity", "direct_effect")
 ]
 
 
 class LawFlags(NamedTuple):
-    """Which parts the law has: constants of a compiled kernel.
+    """The parts of the law: constants of a compiled kernel.
 
-    path : the history has the accumulated slip, or the state of the faces.
+    path : the history has the accumulated slip, or the state of rate-and-state friction.
     varied : joints differ, and the table has a column for each; else one for all.
-    planar : they slip in one direction, x.
-    limited : the shear traction is limited: by Coulomb's law, or zero where a joint is open.
+    planar : joints slip in one direction, x.
+    limited : the shear traction is limited, by Coulomb's law or to zero where a joint is open.
     """
 
     dashpots: bool
@@ -99,7 +99,7 @@ class LawFlags(NamedTuple):
     planar: bool = False
 
 
-#: The parameters that each part of a law needs, beside the normal stiffness.
+#: The parameters of each part of a law; all laws have the normal stiffness.
 OF_PART = {
     "dashpots": ("normal_viscosity", "shear_viscosity"),
     "no_tension": ("carries_tension",),
@@ -118,7 +118,7 @@ OF_PART = {
 
 
 def rows_of(parts: LawFlags) -> tuple[int, ...]:
-    """Return the rows of the table that a law with these parts reads."""
+    """Return the rows of the table that a law with these parts uses."""
     names = [name for part, own in OF_PART.items() if getattr(parts, part) for name in own]
     return tuple(sorted(map(Law._fields.index, ["normal_stiffness", *names])))
 
@@ -133,11 +133,11 @@ def sticking(table: np.ndarray) -> np.ndarray:
 
 
 class History(NamedTuple):
-    """The history of one point of a joint; 0 for what its law does not use.
+    """The history of one point of a joint; variables that its law does not use are 0.
 
-    opening : the largest so far, m. slide_x, slide_z : what has slid, the slip less its elastic
-    part, m. cohesion : of this point, Pa, where slip changes it. path : accumulated slip, m, where
-    the law needs it; with rate-and-state friction ln(theta / theta_0).
+    opening : the largest so far, m. slide_x, slide_z : slip less its elastic part, m. cohesion : of
+    this point, Pa, where slip changes it. path : accumulated slip, m, where the law needs it; with
+    rate-and-state friction ln(theta / theta_0).
     """
 
     opening: float = 0.0
@@ -148,11 +148,11 @@ class History(NamedTuple):
 
 
 class Traction(NamedTuple):
-    """What one point of a joint carries at the end of a step, and its balance of energy.
+    """Traction at one point of a joint at the end of a step, and its energies.
 
     n, x, z : traction, Pa. drag_n, drag_x, drag_z : the dashpots' share of it, Pa. history : after
-    the step. stored : energy in the springs, J/m2. spent : what opening has spent so far, J/m2.
-    slid : what sliding takes in this step, J/m2.
+    the step. stored : energy in the springs, J/m2. spent : fracture energy so far, J/m2. slid :
+    energy dissipated by sliding in this step, J/m2.
     """
 
     n: float
@@ -173,7 +173,7 @@ def parts_of(law: Law) -> LawFlags:
         part: any(getattr(law, name) is not None for name in names)
         for part, names in OF_PART.items()
     }
-    has["closure"] = law.maximum_closure is not None  # whatever share the rock has
+    has["closure"] = law.maximum_closure is not None  # rock_compliance alone does not count
     for part in ("weakening", "dilation", "rate_state"):
         has[part] = has[part] and has["shear"]
     return LawFlags(
@@ -200,10 +200,10 @@ def law(
     shear_stiffness: np.ndarray | None = None,
     **strengths: np.ndarray | None,
 ) -> Law:
-    """Return the law of joints with these properties [n], in its smallest form.
+    """Return the law of joints with these properties [n]; equal values become one number.
 
-    stiffness, shear_stiffness Pa/m; time_constant eta in s, of both [n] or of each [2, n], None
-    without dashpots; tension: whether it is carried; strengths: the other fields of the law, None
+    stiffness, shear_stiffness : Pa/m. time_constant : eta, s, for both [n] or for each [2, n]; None
+    without dashpots. tension : whether it is carried. strengths : the other fields of the law, None
     where no joint has them.
     """
 
@@ -223,8 +223,8 @@ def law(
 
 
 def stiffest(law: Law, scene: "AnyScene") -> tuple[Any, Any]:
-    """Return K_n and K_s (Pa/m; None without shear) that the critical step of a scene is for: of
-    joints closed as far as is in reach, and slid where that lifts them."""
+    """Return K_n and K_s (Pa/m; None without shear) for the critical step of a scene: at the
+    largest closure in reach, and for dilatant joints while they slide."""
     normal, shear = law.normal_stiffness, law.shear_stiffness
     if law.maximum_closure is not None:
         normal = closure_stiffness(law, stress_in_reach(scene))
@@ -234,9 +234,9 @@ def stiffest(law: Law, scene: "AnyScene") -> tuple[Any, Any]:
 
 
 def table_of(law: Law) -> np.ndarray:
-    """Return the parameters as kernels take them: [field, 1], or [field, joint] where some vary.
+    """Return the table of parameters for kernels: [field, 1], or [field, joint] where some vary.
 
-    Absent ones are 0, in pages that are never read.
+    Absent parameters are 0; unused pages take no memory.
     """
     given = [(row, value) for row, value in enumerate(law) if value is not None]
     table = np.zeros((len(law), max(np.size(value) for _, value in given)))
@@ -247,7 +247,7 @@ def table_of(law: Law) -> np.ndarray:
 
 @formula
 def law_of(table, j):
-    """Return the law of joint j, of column 0 where all are alike: every parameter a number."""
+    """Return the law of column j of a table, every parameter a number."""
     return Law(
         table[0, j], table[1, j], table[2, j], table[3, j], table[4, j], table[5, j], table[6, j],
         table[7, j], table[8, j], table[9, j], table[10, j], table[11, j], table[12, j],
@@ -258,7 +258,7 @@ def law_of(table, j):
 
 @formula
 def law_at(table, j, n):
-    """Return the law of joint j of a table whose rows of n joints follow one another."""
+    """Return the law of joint j from a flat table with rows of n joints."""
     return Law(
         table[j], table[n + j], table[2 * n + j], table[3 * n + j], table[4 * n + j],
         table[5 * n + j], table[6 * n + j], table[7 * n + j], table[8 * n + j], table[9 * n + j],
@@ -270,16 +270,15 @@ def law_at(table, j, n):
 
 @cache
 def traction_for(shear: bool, path: bool) -> Callable:
-    """Return the formula `traction` of joints that may have shear, and a path: what they cannot
-    have is not compiled."""
+    """Return the formula `traction`, compiled without shear or path if joints have none."""
     trial = trial_for(shear, path)
 
     @formula
     def traction(law, parts, jump, step, rate, dt, history):
-        """Return the `Traction` of one point: the whole law.
+        """Return the `Traction` of one point: the complete law.
 
         jump : gap and slip (n, x, z) at the end of the step, m. step : their increments over the
-        step, m. rate : what dashpots see of their rates, m/s. dt : s. history : before the step.
+        step, m. rate : their rates for dashpots, m/s. dt : s. history : before the step.
         """
         found = trial(law, parts, jump, rate, dt, history)
         gap, opening, whole_x, whole_z, _, t_n, tau, way = found

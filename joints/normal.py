@@ -12,7 +12,7 @@ def normal_traction(law, parts, gap, gap_rate, opening):
 
     opening : the largest so far with this gap included, m; any number without softening.
 
-    The total gap decides opening, equation (10); an incremental force would lose it.
+    t_n follows from the total gap, equation (10): increments of force would lose the opening.
     """
     t = spring_alone(law, parts, gap)
     if parts.dashpots:
@@ -28,7 +28,7 @@ def spring_traction(law, parts, gap, opening):
 
 @formula
 def spring_alone(law, parts, gap):
-    """Return the traction (Pa) of the spring without tensile limit."""
+    """Return the traction (Pa) of the spring without a tensile limit."""
     t = -law.normal_stiffness * gap
     if parts.closure:
         closed = closure_traction(law, -gap if gap < 0.0 else 0.0)
@@ -38,7 +38,7 @@ def spring_alone(law, parts, gap):
 
 @formula
 def gap_under(law, parts, traction):
-    """Return the gap (m) at which the spring alone carries a traction (Pa), or gaps of many."""
+    """Return the gap (m) at which the spring alone carries a traction (Pa), numbers or arrays."""
     if parts.closure:
         pressed = 0.5 * (traction + abs(traction))
         return (pressed - traction) / law.normal_stiffness - closure_under(law, pressed)
@@ -58,8 +58,8 @@ def _cut(law, parts, t, gap, opening):
 
 @formula
 def normal_tangent(law, parts, gap, gap_rate, before, r):
-    """Return d t_n / d gap (Pa/m); before : the largest opening before this gap, m; the
-    others as in `tangent`."""
+    """Return d t_n / d gap (Pa/m); before : the largest opening before this gap, m; r : rate
+    factor, 1/s."""
     t, slope = spring_alone(law, parts, gap), -law.normal_stiffness
     if parts.closure and gap < 0.0:
         slope = -closure_stiffness(law, t)
@@ -69,9 +69,9 @@ def normal_tangent(law, parts, gap, gap_rate, before, r):
         opening = gap if gap > before else before
         loss = strength_loss(law, gap, before)
         share = stiffness_left(law, opening) if gap > 0.0 else 1.0
-        # Of s(k) / (K k), falling only where the strength does.
+        # Derivative of s(k) / (K k), where the strength falls.
         falling = (loss / law.normal_stiffness - share) / opening if loss < 0.0 else 0.0
-        # The spring reaches the remaining strength and exceeds it only by round-off.
+        # Without dashpots the spring exceeds the remaining strength by round-off only.
         cut = parts.dashpots and share * t < -strength_left(law, opening)
         slope = -loss if cut else share * slope + falling * t
     if parts.no_tension and not law.carries_tension:

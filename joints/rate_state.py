@@ -5,23 +5,23 @@ Friction of faces under t_n at the slip rate V and the state theta (s, the age o
     mu = a asinh( V / (2 V_0) exp((mu_0 + b ln(V_0 theta / D_c)) / a) ),
     d theta / dt = 1 - V theta / D_c
 
-(Dieterich, J. Geophys. Res. 84, 1979; Ruina, J. Geophys. Res. 88, 1983; without the singularity at
-V = 0 as Rice & Ben-Zion, PNAS 93, 1996, and Lapusta et al., J. Geophys. Res. 105, 2000, have it):
-mu_0 + a ln(V / V_0) + b ln(V_0 theta / D_c) where mu is a few a or more. In steady slip theta is
-D_c / V, and mu falls with V where a < b.
+(Dieterich, J. Geophys. Res. 84, 1979; Ruina, J. Geophys. Res. 88, 1983; regularised at V = 0 as in
+Rice & Ben-Zion, PNAS 93, 1996, and Lapusta et al., J. Geophys. Res. 105, 2000). If mu is a few
+times a or more, it is mu_0 + a ln(V / V_0) + b ln(V_0 theta / D_c). In steady slip theta is
+D_c / V, and mu falls with V if a < b.
 
 The history of a point is s = ln(theta / theta_0). A step of dt whose trial traction T* exceeds the
-cohesion c slides by l, at V = l / dt. The state follows exactly for this V, x = l / D_c:
+cohesion c slides by l, at V = l / dt. The exact state for this V is, with x = l / D_c,
 
     theta e^-x + dt (1 - e^-x) / x,
 
-and with A = K_s + C_s / dt the strength at the end of the step is that of both:
+and with A = K_s + C_s / dt the slide l follows from
 
     |T*| - A l = c + t_n mu(l / dt, theta(l)).
 
-With ln V the left side less the right falls at A l + t_n tanh(mu / a) (a + b d ln theta / d ln V),
-of which the last factor is at least a - b x: so there is one root where A D_c >= b t_n, and where
-not as long as a step slides by less than D_c a / b.
+As a function of ln V, the left side less the right falls at the rate
+A l + t_n tanh(mu / a) (a + b d ln theta / d ln V), whose last factor is at least a - b x. So there
+is one root if A D_c >= b t_n, else as long as a step slides by less than D_c a / b.
 """
 
 from math import asinh, exp, expm1, log, log1p, sqrt
@@ -29,18 +29,18 @@ from math import asinh, exp, expm1, log, log1p, sqrt
 from jointwave.joints.formula import formula
 
 MOST = 80  # Newton steps, safeguarded by bisection of a bracket
-SETTLED, ROUND_OFF = 1e-12, 1e-15  # of ln V, and of the traction to be carried
-STILL = 32.0  # -ln of the largest slide, over the longest one, that counts as zero
+SETTLED, ROUND_OFF = 1e-12, 1e-15  # convergence: change of ln V, and residual over the load
+STILL = 32.0  # a slide below e^-STILL of the longest possible one counts as zero
 HELD = 1.0 + 1e-12  # strength over traction of a joint that does not slide
 LN_2 = log(2.0)
-LARGE = 19.0  # from here on asinh(e^x) = x + ln 2 to the last digit
-SMALL = 1e-5  # x, below which a difference is a series: its terms cancel
+LARGE = 19.0  # x from which asinh(e^x) = x + ln 2 to the last digit
+SMALL = 1e-5  # x below which a difference is a series, to avoid cancellation
 LEAST = 1e-300
 
 
 @formula
 def exponent(law, state):
-    """Return (mu_0 + b ln(V_0 theta / D_c)) / a - ln(2 V_0) of s, the number `state`."""
+    """Return (mu_0 + b ln(V_0 theta / D_c)) / a - ln(2 V_0) at s = `state`."""
     rate = law.reference_rate
     begun = log(rate * law.initial_state / law.critical_slip_distance)
     whole = law.friction + law.evolution_effect * (begun + state)
@@ -55,17 +55,15 @@ def friction_at(law, x):
 
 @formula
 def rate_under(law, friction, state):
-    """Return ln V (V in m/s) at which mu > 0 is this friction."""
+    """Return ln V (V in m/s) at which mu is `friction` > 0."""
     x = friction / law.direct_effect  # ln sinh(x), for any x
     return x + log(-0.5 * expm1(-2.0 * x)) - exponent(law, state)
 
 
 @formula
 def ageing(x, young):
-    """Return the increment of s, and d ln theta / d ln V at the end, in a step with slip x D_c.
-
-    young : the step over theta at its beginning.
-    """
+    """Return the increment of s, and d ln theta / d ln V at the end, in a step with slip x D_c;
+    young : dt over the initial theta."""
     left, mean = exp(-x), -expm1(-x) / x if x > LEAST else 1.0
     turn = (left - mean) / x if x > SMALL else x / 3.0 - 0.5
     grown = log(left + young * mean) if x > 0.5 else log1p(young * mean + expm1(-x))
@@ -74,7 +72,7 @@ def ageing(x, young):
 
 @formula
 def resistance_to_rate(law, t_n, x, turn):
-    """Return t_n d mu / d ln V (Pa) where mu = a asinh(e^x); turn : d ln theta / d ln V."""
+    """Return t_n d mu / d ln V (Pa) with mu = a asinh(e^x); turn : d ln theta / d ln V."""
     sine = exp(x if x < LARGE else LARGE)
     share = sine / sqrt(1.0 + sine * sine)
     return t_n * share * (law.direct_effect + law.evolution_effect * turn)
@@ -82,7 +80,7 @@ def resistance_to_rate(law, t_n, x, turn):
 
 @formula
 def resistance_to_sliding(law, t_n, state, slide, dt):
-    """Return d(t_n mu) / d l (Pa/m) of a step that slides by l > 0 (m); state : before it."""
+    """Return d(t_n mu) / d l (Pa/m) in a step that slides by l > 0 (m); state : s before it."""
     grown, turn = ageing(slide / law.critical_slip_distance, dt / (law.initial_state * exp(state)))
     x = log(slide / dt) + exponent(law, state + grown)
     return resistance_to_rate(law, t_n, x, turn) / slide
@@ -90,9 +88,9 @@ def resistance_to_sliding(law, t_n, state, slide, dt):
 
 @formula
 def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
-    """Return the strength (Pa) and s at the end of a step of faces under t_n > 0 (Pa).
+    """Return the strength (Pa) and s at the end of a step under t_n > 0 (Pa).
 
-    cohesion : Pa. state : s, at the beginning. size, stiffness : |T*|, Pa, and A, Pa/m. dt : s.
+    cohesion : Pa. state : s before the step. size, stiffness : |T*|, Pa, and A, Pa/m. dt : s.
     """
     young = dt / (law.initial_state * exp(state))
     load, healed = size - cohesion, state + log1p(young)
@@ -103,7 +101,7 @@ def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
     rate, once = rate_under(law, friction, state), log(least / dt)
     if rate < (fastest if fastest < once else once) - STILL:
         return HELD * size, healed
-    # Lower bound: half of the load on the spring, half on friction at its strongest.
+    # Lower bound: either the spring or the strongest friction takes at least half of the load.
     low, high = rate_under(law, 0.5 * friction, healed), fastest
     low = low if low < fastest - LN_2 else fastest - LN_2
     rate = rate if rate < high else high
@@ -124,6 +122,6 @@ def slide_at_rate(law, t_n, cohesion, state, size, stiffness, dt):
         if abs(further) <= SETTLED or abs(left) <= ROUND_OFF * load:
             break
         rate = rate + further if low < rate + further < high else 0.5 * (low + high)
-    # The smaller of the two has less cancellation.
+    # Add or subtract the smaller term, for less cancellation.
     unloaded = stiffness * slide
     return size - unloaded if unloaded < carried else cohesion + carried, state + grown

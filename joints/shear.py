@@ -1,9 +1,9 @@
 """Shear traction of a joint: spring and dashpot up to Coulomb's strength, equation (3).
 
-The traction acts on the right block, in the two directions x and z of the face. The elastic part
-e of the slip is its history: a step adds the increment of slip, and traction above the strength is
-scaled back along its own direction (radial return). With T* = -K_s e - C_s de/dt on the strength
-and de/dt taken over the step, e is where spring and dashpot together carry exactly T*.
+The traction acts on the right block, in the two directions x and z of the face. The history is the
+elastic part e of the slip: a step adds the increment of slip, and traction above the strength is
+scaled back along its own direction (radial return). e is then updated so that spring and dashpot,
+-K_s e - C_s de/dt with de/dt over the step, carry exactly the strength.
 """
 
 from math import copysign, sqrt
@@ -12,13 +12,13 @@ from jointwave.joints.formula import formula
 from jointwave.joints.softening import is_broken, strength_left
 from jointwave.joints.weakening import friction_left
 
-# Pa; above any strength, and finite when squared.
+# Pa; above any strength, with a finite square.
 UNLIMITED = 1e100
 
 
 @formula
 def shear_traction(law, parts, slip_x, slip_z, rate_x, rate_z):
-    """Return (t_x, t_z) (Pa) without sliding, from the total slip (m) and its rate."""
+    """Return (t_x, t_z) (Pa) of spring and dashpot, from the slip (m) and its rate (m/s)."""
     t_x, t_z = -law.shear_stiffness * slip_x, 0.0
     if not parts.planar:
         t_z = -law.shear_stiffness * slip_z
@@ -39,8 +39,8 @@ def size_of(parts, t_x, t_z):
 def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
     """Return the limit of |T| (Pa); `UNLIMITED` where there is none.
 
-    c s(k) / s_t + t_n tan(phi), not below zero; zero where the faces are separated; the cohesion
-    only where friction depends on the rate of slip.
+    c s(k) / s_t + t_n tan(phi), at least zero; zero where faces are separated; without the friction
+    if that depends on the slip rate.
 
     t_n, gap : normal traction, Pa, and gap, m.
     opening : the largest so far, m. cohesion : of this point, Pa, where slip changes it.
@@ -62,7 +62,7 @@ def shear_strength(law, parts, t_n, gap, opening, cohesion, path):
 
 @formula
 def holds(law, parts, gap, opening):
-    """Return whether the faces are in contact or bonded: not if open without tension, or broken."""
+    """Return whether the faces are in contact or bonded (tension carried and not broken)."""
     pulls = (not parts.no_tension or law.carries_tension != 0.0) and not is_broken(
         law, parts, opening
     )
@@ -81,9 +81,8 @@ def resistance(law, parts, dt):
 def shear_return(law, parts, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
     """Return (t_x, t_z, ex, ez, slipped) at the end of a step.
 
-    ex, ez : trial elastic slip, the old one and the whole increment, m.
-    ex_old, ez_old : elastic slip before the step, m; rate_x, rate_z : of the slip, m/s.
-    tau : strength, Pa; dt : the step, s.
+    ex, ez : trial elastic slip, the old one plus the increment of slip, m. ex_old, ez_old : elastic
+    slip before the step, m. rate_x, rate_z : of the slip, m/s. tau : strength, Pa. dt : s.
     """
     t_x, t_z = shear_traction(law, parts, ex, ez, rate_x, rate_z)
     if not parts.limited:

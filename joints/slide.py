@@ -1,13 +1,12 @@
-"""The slip of a step where slip changes the joint: its strength and its normal traction.
+"""The slide of a step in joints whose strength or normal traction depends on slip.
 
-A point of a joint whose trial traction T* exceeds the strength slides by l, which unloads spring
-and dashpot by a l, a = K_s + C_s / dt, until they carry the strength that is left there:
+A point whose trial traction T* exceeds the strength slides by l, which unloads spring and dashpot
+by a l, a = K_s + C_s / dt, until they carry the strength that is left:
 
     |T*| - a l = tau(t_n(l), S + l),
 
-t_n of the gap less the lift w(S + l). Open faces and faces without
-compression neither wear nor age: their slip does not count in the path S. `joints.rate_state` has
-the slip under rate-dependent friction.
+with t_n at the gap less the dilation w(S + l). Slip of faces without compression does not count in
+the path S. Rate-dependent friction is in `joints.rate_state`.
 """
 
 from collections.abc import Callable
@@ -26,11 +25,11 @@ SETTLED = 1e-14  # convergence, over the longest possible slip
 
 
 class Trial(NamedTuple):
-    """A step up to its shear traction.
+    """The trial state of a step, and the result of its slide.
 
-    gap : less the lift before the step, m. opening : the largest so far, m. x, z : elastic slip as
-    if nothing slid in the step, m. still : strength before the step's slide, Pa. t_n, tau, path :
-    normal traction and strength, Pa, and the path, m, after it.
+    gap : less the dilation before the step, m. opening : the largest so far, m. x, z : elastic slip
+    without sliding in the step, m. still : strength before the slide, Pa. t_n, tau, path : normal
+    traction and strength, Pa, and the path, m, after the slide.
     """
 
     gap: float
@@ -47,7 +46,7 @@ class Trial(NamedTuple):
 def after_slide(law, parts, start, rate, cohesion, dt):
     """Return normal traction and strength (Pa) and the path (m) at the end of a step.
 
-    start : the `Trial` of the step without slide. rate : of the jump, m/s. cohesion : left, Pa.
+    start : the `Trial` without a slide. rate : of the jump, m/s. cohesion : of this point, Pa.
     """
     t_n, tau, path = start.t_n, start.tau, start.path
     t_x, t_z = shear_traction(law, parts, start.x, start.z, rate[1], rate[2])
@@ -73,7 +72,7 @@ def after_slide(law, parts, start, rate, cohesion, dt):
 
 @formula
 def lifted_slide(law, parts, start, gap_rate, cohesion, size, dt):
-    """Return the same of a joint that dilates, whose slide lifts the faces; size : |T*|, Pa."""
+    """Return the same as `after_slide`, for a dilatant joint; size : |T*|, Pa."""
     gap, opening, path, t_n = start.gap, start.opening, start.path, start.t_n
     a, before = resistance(law, parts, dt), lift(law, start.path)
     low, high, way = 0.0, size / a, 0.0
@@ -120,8 +119,7 @@ def pressing(law, parts, gap, gap_rate, opening, dt):
 
 @cache
 def trial_for(shear: bool, path: bool) -> Callable:
-    """Return the formula `trial` of joints that may have shear, and a path: what they cannot have
-    is not compiled."""
+    """Return the formula `trial`, compiled without shear or path if joints have none."""
 
     @formula
     def trial(law, parts, jump, rate, dt, history):

@@ -1,11 +1,11 @@
-"""Tensile strength that opening reduces: linear softening, secant unloading.
+"""Tensile softening of a joint: linear, with secant unloading.
 
-A joint carries tension up to its strength s_t, reached at the opening w_0 = s_t / K. From there
-the remaining strength falls linearly with the largest opening k, to zero at w_c = 2 G_c / s_t:
+A joint carries tension up to its strength s_t, reached at the opening w_0 = s_t / K. Beyond, the
+remaining strength falls linearly with the largest opening k, to zero at w_c = 2 G_c / s_t:
 
     s(k) = s_t for k <= w_0,   s_t (w_c - k) / (w_c - w_0) up to w_c,   0 beyond.
 
-Below k it unloads and reloads through the origin with the secant stiffness s(k) / k.
+Below k the joint unloads and reloads through the origin with the secant stiffness s(k) / k.
 Hillerborg, Modeer & Petersson (1976); Camacho & Ortiz (1996).
 """
 
@@ -39,7 +39,7 @@ def is_broken(law, parts, opening):
 
 @formula
 def strength_loss(law, gap, before):
-    """Return d s(k) / d gap (Pa/m), zero but where the joint opens further and softens."""
+    """Return d s(k) / d gap (Pa/m): zero except where the joint opens further and softens."""
     first = law.tensile_strength / law.normal_stiffness
     softens = gap > before and first < gap < law.critical_opening
     return -law.tensile_strength / (law.critical_opening - first) if softens else 0.0

@@ -1,13 +1,12 @@
 """The consistent tangent of the joint law: derivatives of traction within one step.
 
-An implicit step of rate factor r has gap_rate = r gap + const and slip_rate = r slip + const
-(Newmark: r = gamma / (beta dt)), so a dashpot C counts as a spring r C. With them the derivatives
-of `joints.law.traction` make Newton's method quadratic (Simo & Hughes, Computational
-Inelasticity, 1998, section 3.3). Slip changes the normal traction where it
-dilates the faces; otherwise t_n depends on the gap only.
+In an implicit step of rate factor r, gap_rate = r gap + const and slip_rate = r slip + const
+(Newmark: r = gamma / (beta dt)), so a dashpot C acts as a spring r C. With these derivatives of
+`joints.law.traction` Newton's method converges quadratically (Simo & Hughes, Computational
+Inelasticity, 1998, section 3.3). Without dilation t_n depends on the gap only.
 
-At a kink the tangent is that of the side whose branch the traction takes: a joint of zero gap is
-closed, one at its largest opening unloads, shear on the strength has not slipped yet.
+At a kink the tangent is that of the branch of the traction: a joint of zero gap is closed, one at
+its largest opening unloads, and shear equal to the strength has not slipped yet.
 """
 
 from collections.abc import Callable
@@ -26,9 +25,8 @@ from jointwave.joints.weakening import friction_left
 
 
 class Tangent(NamedTuple):
-    """Derivatives of the traction, Pa/m: nn of t_n with the gap, xn and zn of t_x and t_z with it,
-    xx, xz, zz of t_x and t_z with the slips (xz = zx), nx and nz of t_n with them. Without shear nn
-    only."""
+    """Derivatives of the traction, Pa/m: ab is d t_a / d jump_b, with xz = zx; without shear only
+    nn is not zero."""
 
     nn: float
     xn: float = 0.0
@@ -42,8 +40,7 @@ class Tangent(NamedTuple):
 
 @cache
 def tangent_for(shear: bool, path: bool) -> Callable:
-    """Return the formula `tangent` of joints that may have shear, and a path: what they cannot
-    have is not compiled."""
+    """Return the formula `tangent`, compiled without shear or path if joints have none."""
     trial = trial_for(shear, path)
 
     @formula
@@ -92,9 +89,9 @@ def tangent_for(shear: bool, path: bool) -> Callable:
         n_x, n_z = t_x / size if slips else 0.0, 0.0
         if not parts.planar:
             n_z = t_z / size if slips else 0.0
-        # On the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*. Where
-        # slip changes the joint d tau is rise d gap + (1 - share) d|T*|, and d t_n has pressed
-        # d|T*|. Without strength the traction is zero, whatever the trial traction.
+        # At the strength T = tau n, n = T* / |T*|: dT = n dtau + tau / |T*| (1 - n n^T) dT*. Where
+        # slip changes the joint, d tau = rise d gap + (1 - share) d|T*|, and d t_n has the term
+        # pressed d|T*|. Without strength the traction is zero for any trial traction.
         left = 0.0 if tau <= 0.0 else slope
         turn = left * tau / size if slips else left
         along = (1.0 - share) * left - turn
@@ -117,10 +114,7 @@ tangent = tangent_for(shear=True, path=True)
 
 @formula
 def _strength_rise(law, parts, rise, tau, gap, before, cohesion):
-    """Return d tau / d gap (Pa/m) of the shear strength tau, zero where it is lost.
-
-    rise : that of friction, Pa/m.
-    """
+    """Return d tau / d gap (Pa/m), zero without strength; rise : the part of friction, Pa/m."""
     if parts.softening:
         c = cohesion if parts.residual else law.cohesion
         rise += (

@@ -1,7 +1,7 @@
-"""Arrays that a kernel borrows from its caller: it counts no references to them.
+"""Arrays that a kernel borrows from its caller, without counting references.
 
-numba counts references to every array, and to every view of one, by atomic operations, and finds
-few of them to be needless where loops have branches. The caller of a kernel keeps its arguments.
+numba counts references to every array and view with atomic operations, and removes few of them in
+loops with branches. The caller of a kernel keeps its arguments alive.
 """
 
 from typing import Any
@@ -11,7 +11,7 @@ from numba.extending import intrinsic
 
 
 def places_of(kind: Any) -> list[list[int]]:
-    """Return where a value of numba's type keeps what counts references, for each of its arrays."""
+    """Return the place of the reference counter of each array in a value of this numba type."""
     if isinstance(kind, types.Array):
         return [[0]]
     parts = kind.types if isinstance(kind, types.BaseTuple) else ()
@@ -20,7 +20,7 @@ def places_of(kind: Any) -> list[list[int]]:
 
 @intrinsic
 def borrowed(typing, values):
-    """Return an argument of a kernel, an array or a tuple of such, as a kernel should take it."""
+    """Return an array, or a nested tuple of arrays, without its reference counters."""
     places = places_of(values)
 
     def generate(context, builder, signature, arguments):

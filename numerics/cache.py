@@ -1,4 +1,4 @@
-"""The cache of compiled kernels: one folder for each version of the sources in use."""
+"""The cache of compiled kernels: one folder for each version of the sources."""
 
 import fcntl
 import hashlib
@@ -21,8 +21,7 @@ UNUSED = 30 * 86400.0  # s, after which a version is removed
 def cache_directory(root: Path) -> Path:
     """Return a cache directory keyed by the sources of the kernels' packages below `root`.
 
-    A compiled caller does not notice that a function in another file has changed; a new
-    directory for each state of the sources does.
+    numba would not recompile a caller if a function in another file changes.
     """
     digest = hashlib.sha256(numba.__version__.encode())
     for package in PACKAGES:
@@ -49,11 +48,10 @@ def make(directory: Path) -> None:
 
 @contextmanager
 def one_process(lock: Path, wait: float, announce: Callable[[], None]) -> Iterator[None]:
-    """Hold the lock of a cache, for which other processes wait; announce what takes longer than
-    `wait`, s."""
+    """Hold the lock of a cache, for which other processes wait; call `announce` after `wait`, s."""
     timer = Timer(wait, announce)
     with ExitStack() as held:
-        with suppress(OSError):  # a cache that cannot be written
+        with suppress(OSError):  # the cache is not writable
             lock.parent.mkdir(parents=True, exist_ok=True)
             fcntl.flock(held.enter_context(lock.open("w")), fcntl.LOCK_EX)
         held.callback(timer.cancel)
@@ -63,7 +61,7 @@ def one_process(lock: Path, wait: float, announce: Callable[[], None]) -> Iterat
 
 
 def forget_unused(base: Path) -> None:
-    """Remove versions, and nothing else, that were not used for `UNUSED`."""
+    """Remove the folders of versions that were not used for `UNUSED`, and no other files."""
     for state in base.iterdir():
         with suppress(OSError):
             if STATE.fullmatch(state.name) and time() - state.stat().st_mtime > UNUSED:

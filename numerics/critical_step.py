@@ -1,10 +1,10 @@
-"""The critical step of leapfrog whose dashpots see the rate extrapolated to the centre of the step.
+"""The critical step of leapfrog with dashpots at extrapolated rates.
 
-The rate at step n is (3 r[n-1/2] - r[n-3/2]) / 2: second order, explicit, no equation to solve.
-The mode that first grows alternates its sign at each step, where that rate is 4 u[n] / dt, so the
-step is critical when the largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4. For one mode this
-reads dt = sqrt(4 eta^2 + 4 / omega^2) - 2 eta; the Jury conditions of the cubic characteristic
-polynomial show that no other root leaves the unit circle before.
+The rate at step n is (3 r[n-1/2] - r[n-3/2]) / 2: second order and explicit. The first mode to grow
+alternates its sign at each step, where that rate is 4 u[n] / dt. So the step is critical when the
+largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4; for one mode, dt = sqrt(4 eta^2 + 4 / omega^2)
+- 2 eta. By the Jury conditions of the cubic characteristic polynomial no other root leaves the unit
+circle before.
 """
 
 from collections.abc import Callable
@@ -28,7 +28,7 @@ def critical_step(largest: Callable[[float, float], float], damped: bool) -> flo
     def excess(dt: float) -> float:
         return largest(dt * dt, 4 * dt) - 4
 
-    if excess(undamped) <= 1e-12:  # dashpots of ratio zero, but for round-off
+    if excess(undamped) <= 1e-12:  # dashpots of zero, except for round-off
         return undamped
     lower = undamped
     while excess(lower) > 0:

@@ -1,8 +1,7 @@
-"""Denormals, numbers below 2e-308, treated as zero while kernels run.
+"""Flushing of denormals, numbers below 2e-308, to zero while kernels run.
 
-Ahead of every wave the motion of discrete blocks falls off faster than exponentially, and so do its
-squares in a ledger or a yield condition. Processors handle numbers between 2e-308 and zero by
-slow exceptions, although they are physically irrelevant.
+Ahead of every wave the motion of discrete blocks, and its square in a ledger or a yield condition,
+decays faster than exponentially. Processors handle denormals by slow exceptions.
 """
 
 import platform
@@ -73,15 +72,15 @@ def _restore(typing, old):
     return types.none(types.int64), generate
 
 
-# An intrinsic has another name in every process: a kernel that closed over one would never be found
-# in the cache.
+# The name of an intrinsic differs in every process: numba's cache would never find a kernel that
+# closes over one. So kernels call these formulas.
 @formula
 def flush_denormals():
-    """Flush denormals to zero in this thread from now on; return the setting before."""
+    """Flush denormals to zero in this thread from now on; return the previous setting."""
     return _flush()
 
 
 @formula
 def restore_denormals(old):
-    """Restore this thread's handling of denormals before `flush_denormals`."""
+    """Restore this thread's setting from before `flush_denormals`."""
     _restore(old)

@@ -1,6 +1,6 @@
-"""The divergence monitor, which stops a run that exceeds its bounds, and its one-line error.
+"""The divergence monitor: stops a run that exceeds its bounds with a one-line error.
 
-Speeds cannot exceed what all forces together can cause, and energy cannot increase without work.
+Speeds are bounded by the sum of all forces, and energy cannot increase without work.
 """
 
 from typing import Any, NamedTuple
@@ -11,22 +11,22 @@ from jointwave.cases.errors import StoppedError
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 
-EVERY = 96  # steps before a sample of too much energy that are not trusted either
-RUNAWAY = 100.0  # over the speed that forces can cause: leapfrog overshoots at the critical step
-CREATED = 0.1  # of the largest term of the ledger: more than any bounded run of any scheme gains
-LAST_DIGITS = 1e-8  # of the ledger's initial terms, from which small changes are differences
-HUGE = 1e100  # an amplitude whose square overflows
+EVERY = 96  # steps before a sample of too much energy that count as invalid, too
+RUNAWAY = 100.0  # times the speed that forces can cause: leapfrog overshoots at the critical step
+CREATED = 0.1  # of the largest change of a term of the ledger: no bounded run gains as much
+LAST_DIGITS = 1e-8  # of the ledger's largest term: allows for its round-off
+HUGE = 1e100  # an amplitude whose square may overflow
 
 SPEED, ENERGY = 0, 1  # the exceeded bound
 
 
 class Guard(NamedTuple):
-    """The bounds of a run, and the finding.
+    """The bounds of a run, and the first violation.
 
-    limit : float array, the largest speed of each kind, m/s (or rad/s, kg m2/s).
-    peak : float array [1], the largest change of a ledger's term so far, J.
-    found : int64 array [3], the step at which a bound was found exceeded (-1: none), which one
-        (SPEED or ENERGY), and the last valid step.
+    limit : the largest speed of each kind, m/s (or rad/s, kg m2/s).
+    peak : [1], the largest change of a ledger's term so far, J.
+    found : int64 [3], the step at which a bound was exceeded (-1: none), which one (SPEED or
+        ENERGY), and the last valid step.
     """
 
     limit: np.ndarray
@@ -35,8 +35,7 @@ class Guard(NamedTuple):
 
 
 class Guarded(NamedTuple):
-    """A run: its scene, its engine in words, the key that decides its step, its clock, and the
-    critical step, s."""
+    """A run: scene, engine in words, the scene key that sets the step, clock, critical step, s."""
 
     scene: AnyScene
     engine: str
@@ -46,15 +45,15 @@ class Guarded(NamedTuple):
 
 
 def guard(speeds: Any) -> Guard:
-    """Return the guard of a run for `RUNAWAY` times the speeds that its forces can cause."""
+    """Return the guard of a run with limits of `RUNAWAY` times these speeds."""
     with np.errstate(over="ignore"):
         limit = np.minimum(RUNAWAY * np.atleast_1d(speeds), np.finfo(float).max)
     return Guard(limit, np.zeros(1), np.array([-1, SPEED, -1]))
 
 
 def audit(guard: Guard, energy: np.ndarray, first: int, last: int, stride: int) -> None:
-    """Check samples first .. last - 1 of a ledger [term, sample], `stride` steps apart; the last
-    term is the work. The earliest finding is kept."""
+    """Check the ledger [term, sample] in samples first .. last - 1, `stride` steps apart; the last
+    term is the work. Keep the earliest violation."""
     with np.errstate(over="ignore", invalid="ignore"):
         gained = energy[:, first:last] - energy[:, :1]
         peak = np.fmax.accumulate(np.append(guard.peak, np.fmax.reduce(np.abs(gained))))
@@ -75,11 +74,11 @@ def check(
     speed: np.ndarray,
     places: np.ndarray,
 ) -> None:
-    """Raise StoppedError, with the valid samples, where a run leaves its bounds in samples
+    """Raise StoppedError, with the number of valid samples, if a run leaves its bounds in samples
     first .. last - 1.
 
-    energy : the ledger [term, sample], None where it is not exact. speed : largest ones of places
-    [n] after these samples, as the guard's limit. places : [n, d], m.
+    energy : the ledger [term, sample]; None where it is not exact. speed : largest at each place
+    after these samples [n], in the unit of the guard's limit. places : [n, d], m.
     """
     (first, last), stride, found = samples, run.time.stride, guard.found
     if energy is not None:
@@ -91,7 +90,7 @@ def check(
 
 
 def _stopped(run: Guarded, found: list[int], place: Any) -> StoppedError:
-    """Return the error of a run by a guard's finding; place : of the fastest point, m."""
+    """Return the error of a run from `Guard.found`; place : of the fastest point, m."""
     (step, what, sound), scene, dt = found, run.scene, run.time.dt
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
     at = ", ".join(f"{x:.6g}" for x in place)
@@ -119,9 +118,9 @@ def _cause(run: Guarded) -> str:
 
 
 def speed_that(*motions: float) -> float:
-    """Return a bound on sqrt(2 E / m) from everything that adds energy to a body.
+    """Return a bound on sqrt(2 E / m) of a body: the sum of all contributions to it.
 
-    Each is a speed: an impulse over the mass, a velocity of the base, sqrt(2 E / m) of what is
-    stored. They add up: d sqrt(2 E) / dt is at most |F| in the norm of 1 / m.
+    Each is a speed: an impulse over the mass, a velocity of the base, sqrt(2 E / m) of stored
+    energy. They add up since d sqrt(2 E) / dt is at most |F| in the norm of 1 / m.
     """
     return float(sum(abs(motion) for motion in motions))

@@ -15,7 +15,7 @@ from jointwave.numerics.cache import cache_directory, make, mark_used, one_proce
 
 WAIT = 1.5  # s, after which compiling is announced: cached kernels load in less, also under load
 
-#: Where kernels are cached; numba forgets its own setting when one of its variables changes.
+#: Directory of the cache, set for each kernel: numba resets its own when its environment changes.
 DIRECTORY = cache_directory(Path(__file__).resolve().parent.parent)
 mark_used(DIRECTORY)
 
@@ -23,11 +23,11 @@ mark_used(DIRECTORY)
 def jitted(function: Callable, flags: Any = None) -> Callable:
     """Compile a kernel for the types of its arguments when it is first called with them.
 
-    It is cached on disk, has IEEE arithmetic (fastmath would break bit-identity), and holds no
-    lock of Python's, so that threads run side by side. What it closes over is constant.
+    It is cached on disk, has IEEE arithmetic (fastmath would break bit-identity), and releases the
+    GIL for threads. Variables of its closure are constants.
 
-    flags : the constants that decide what it closes over, plain values in tuples. Each has a name
-    in the cache, so that several processes compile kernels of different flags at the same time.
+    flags : nested tuples of plain values that determine the closure. They are part of the name in
+    the cache, so that several processes can compile kernels of different flags at the same time.
     """
     if flags is not None:
         function.__qualname__ += f".{sha256(repr(flags).encode()).hexdigest()[:8]}"
@@ -39,7 +39,7 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
     @wraps(function)
     def call(*arguments: Any) -> Any:
         kinds = kind(arguments)
-        if kinds not in known:  # numba's types of all arrays of a model take longer than a step
+        if kinds not in known:  # numba.typeof of all arrays of a model takes longer than a step
             types = tuple(map(numba.typeof, arguments))
             if types not in kernel.overloads:
                 compile_for(kernel, types)
@@ -50,7 +50,7 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
 
 
 def kind(value: Any) -> Any:
-    """Return what decides numba's type of an argument."""
+    """Return a cheap key that determines numba's type of an argument."""
     if isinstance(value, np.ndarray):
         return value.dtype, value.ndim, value.flags.num
     if isinstance(value, tuple):
@@ -61,13 +61,12 @@ def kind(value: Any) -> Any:
 def compile_for(kernel: Any, types: tuple) -> None:
     """Load a kernel from the cache, or compile and save it; one process at a time per function.
 
-    Others that want it, such as those of a run that MPI shares, wait and load it. numba reads the
-    index of a function, adds to it and writes it back: two processes at once would give two
-    specialisations the same file.
+    Other processes, as of an MPI run, wait and then load it. numba reads a function's index, adds
+    to it and writes it back: two processes at once would give two specialisations the same file.
     """
     function = kernel.py_func
     name = f"{function.__module__}.{function.__qualname__}.lock"
-    with suppress(OSError):  # a cache that cannot be written
+    with suppress(OSError):  # the cache is not writable
         make(DIRECTORY)
     with one_process(DIRECTORY / name, WAIT, announce):
         kernel.compile(types)

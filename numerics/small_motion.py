@@ -1,7 +1,7 @@
-"""Blocks that move further than small motion allows: contacts are those of the initial state.
+"""Detection of blocks that move too far for small motion.
 
-Faces that have moved by a share s of a block touch on 1 - s of what their contact has, and blocks
-that met nothing at the start pass through one another.
+Contacts are those of the initial state. After a motion of a fraction s of a block, faces touch on
+1 - s of the contact's area, and blocks without a contact pass through one another.
 """
 
 from collections.abc import Callable
@@ -15,13 +15,13 @@ from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 
-LARGEST = 0.02  # of the smaller block
-OVERLAP = 0.01  # of its area: corners that touch at the start overlap by its square
+LARGEST = 0.02  # motion, over the size of the smaller block
+OVERLAP = 0.01  # area, over that of the smaller block: touching corners overlap by LARGEST squared
 
 
 class Moved(NamedTuple):
-    """How far a block has moved against a neighbour, `by` (m) of `size` (m), or overlaps a block
-    that was none, and where it was: y, or x and y, m."""
+    """Motion `by` (m) of a block against its neighbour `other` (-1: a wall), or the depth of an
+    overlap without a contact; size of the smaller block (m), and initial place, m."""
 
     block: int
     other: int
@@ -34,8 +34,10 @@ class Moved(NamedTuple):
 def farthest(
     pairs: np.ndarray, by: np.ndarray, size: np.ndarray, places: np.ndarray, blocks: float = inf
 ) -> Moved:
-    """Return the joint that has moved furthest, of pairs of blocks [c, 2], walls from `blocks` on,
-    distances [c], sizes [c] and places [c, d], m."""
+    """Return the contact with the largest motion over size.
+
+    pairs : its blocks [c, 2], walls from `blocks` on. by, size : m [c]. places : m [c, d].
+    """
     k = int(np.nan_to_num(by / size, nan=0.0).argmax())
     (i, j), place = pairs[k].tolist(), tuple(places[k].tolist())
     return Moved(i, j if j < blocks else -1, float(by[k]), float(size[k]), place)
@@ -44,13 +46,13 @@ def farthest(
 def refuse_large_motion(
     scene: Scene | RockMass, who: str, find: Callable[[], Moved | None], t: float, samples: int
 ) -> None:
-    """Raise StoppedError where a block has moved further than small motion allows.
+    """Raise StoppedError if a block has moved further than small motion allows.
 
-    Faces that only translate stand for faces of large extent, and finite rotations follow faces
-    that leave one another: there, as where the scene allows it, nothing is looked for.
+    Only scenes of small rotations are checked: faces without rotations stand for large faces, and
+    finite rotations follow faces that separate. numerics.allow_large_motion turns the check off.
 
-    who : in words. find : returns the motion. t : of the look, s. samples : how many had been taken
-    at the look before.
+    who : engine in words. find : returns the motion. t : now, s. samples : valid ones, at the last
+    check.
     """
     if scene.numerics.allow_large_motion or scene.rotation != "small":
         return
@@ -76,14 +78,16 @@ def refuse_large_motion(
 
 
 def may_overlap(cut: Blocks, moved: np.ndarray) -> bool:
-    """Return whether displacements [n, 2] (m), of blocks in the plane or of their points, differ
-    enough for blocks that do not touch to overlap."""
+    """Return whether displacements [n, 2] (m) of plane blocks or their points differ enough for an
+    overlap of blocks without a contact."""
     return max(map(np.ptp, moved.T)) > OVERLAP / 2 * float(np.sqrt(cut.volume.min()))
 
 
 def overlapping(cut: Blocks, motion: np.ndarray) -> Moved | None:
-    """Return two blocks in the plane that have no contact and overlap, by their displacements and
-    rotations [n, 3]; None, and little done, where displacements differ too little for it."""
+    """Return the two plane blocks without a contact that overlap most, or None.
+
+    motion : displacements and rotations [n, 3], m and rad.
+    """
     if not may_overlap(cut, motion[:, :2]):
         return None
     import shapely

@@ -1,7 +1,7 @@
-"""The time loop: a run in intervals, after each of which it is checked, saved and reported.
+"""The time loop: a run in chunks of samples, with a check, checkpoint and report after each.
 
-Engines write no files and handle no signals. They pass their state to a keeper, as nested tuples
-of arrays (`results.arrays`), between intervals of steps.
+Engines write no files and handle no signals. Between chunks they pass their state to a keeper, as
+nested tuples of arrays (`results.arrays`).
 """
 
 from collections.abc import Callable
@@ -23,7 +23,7 @@ class Checkpointer(Protocol):
         """Copy the state after `done` samples into `parts`."""
 
     def look(self, samples: int, parts: Any) -> None:
-        """Save the parts after so many samples, or raise InterruptedRun with their number."""
+        """Save the parts if due, or raise InterruptedRun with the number of samples."""
 
 
 def run_in_chunks(
@@ -36,13 +36,12 @@ def run_in_chunks(
     recorder: Any = None,
     keeper: Checkpointer | None = None,
 ) -> Any:
-    """Take all samples of a run in intervals of `chunk`, and return its result.
+    """Take all samples of a run in chunks of `chunk`, and return its result.
 
-    march : takes samples first .. last - 1, and raises a StoppedError if the run exceeds its
-    bounds. result : of so many samples; a run that stops has that of the valid ones in its error.
-    parts : the state of the run. recorder : `results.snapshots.SnapshotRecorder`, whose snapshots
-    are at begins of intervals; None without. keeper : may save all that changes after every
-    interval; None without.
+    march : takes samples first .. last - 1; raises StoppedError if the run exceeds its bounds.
+    result : returns the result of so many samples; the error gets that of the valid ones. parts :
+    the state of the run. recorder : `results.snapshots.SnapshotRecorder`, or None; snapshots are
+    taken at the start of a chunk. keeper : saves checkpoints after chunks, or None.
     """
     stops, done = {samples, *range(0, samples, max(1, chunk))}, 0
     if recorder is not None:

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-NESTED = tuple, list  # implicit runs look at these in every iteration
+NESTED = tuple, list  # a constant: implicit runs test for these types in every iteration
 
 
 def arrays(parts: Any) -> Iterator[np.ndarray]:
-    """Yield all arrays of nested tuples and lists, in their order; other entries are skipped."""
+    """Yield all arrays of nested tuples and lists, in order; skip other entries."""
     for part in parts if isinstance(parts, NESTED) else (parts,):
         if isinstance(part, np.ndarray):
             yield part
@@ -26,7 +26,7 @@ def copied(parts: Any) -> Any:
 
 
 def fill(parts: Any, values: Any) -> None:
-    """Copy the arrays of `values` into those of `parts`, equal in number and shapes."""
+    """Copy the arrays of `values` into those of `parts`, of the same number and shapes."""
     for own, given in zip(arrays(parts), arrays(values), strict=True):
         own[...] = given
 

@@ -1,4 +1,4 @@
-"""The common form of all results, whether from an engine or an exact solution."""
+"""The common form of the results of engines and exact solutions."""
 
 import hashlib
 import json
@@ -18,7 +18,7 @@ from jointwave.results.stress import stress_components
 TERMS = ("kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work")
 
 OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
-#: The dimension of the components of each quantity that may have several, and their names.
+#: The dimension of the components of each quantity, and the names of components.
 COMPONENTS = {
     "stress": "stress_component",
     "shear": "across",
@@ -36,24 +36,21 @@ NAMES: dict[str, dict[int, Sequence[str]]] = {
 
 Coordinates = dict[str, tuple[tuple[str, ...], np.ndarray]]
 A_RESULT = "a result: a Dataset, of `simulate` or a file"  # what functions accept
-MOST_OPEN = 1e-3  # of a ledger's largest term, that no term may account for
-#: Of the energy at rest, a billion times the round-off of double precision: soft joints let stiff
-#: rock move as a whole by far more than it strains, and the last digits of that strain it, too.
+MOST_OPEN = 1e-3  # largest imbalance of a ledger, over its largest term
+#: Least scale of an imbalance, over the static energy; 1e9 times round-off: soft joints let stiff
+#: rock move as a whole far more than it strains, and round-off of this motion strains it.
 AT_REST = 1e9 * float(np.finfo(float).eps)
 
 
 def scene_hash(scene: AnyScene, text: str | None = None) -> str:
     """Return a short hash of everything that determines a result, including samples of loads and
-    the file of a mesh or of blocks.
-
-    text : the scene as JSON, where it is at hand.
-    """
+    the file of a mesh or of blocks; text : the scene as JSON, if known."""
     digest = hashlib.sha256((text or scene.model_dump_json()).encode())
     for pulse in scene.pulses:
         if pulse.history is not None:
             digest.update(pulse.history.time.tobytes())
             digest.update(pulse.history.stress.tobytes())
-    # An unreadable mesh is reported where it is used, with a message of its own.
+    # An unreadable mesh is reported where it is used.
     if scene.mesh_path is not None and scene.mesh_path.is_file():
         digest.update(scene.mesh_path.read_bytes())
     return digest.hexdigest()[:16]
@@ -75,27 +72,26 @@ def dataset(
     ----------
     engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
     time : float array [n], s.
-    quantities : by name, those that the solver knows, float arrays in SI, stress and traction
-        compression positive. Of a pillar stress [sections, n]; velocity, displacement [points, n],
-        along y. Of its motion in space velocity, displacement, rotation [points, n, 3], along or
-        about x, y, z; shear [sections, n, 2], along x, z, the force on the far side over the area.
-        Of a rock mass in d dimensions velocity, displacement [points, n, d]; stress [points, n, 3
-        or 6], the mean over the block or that of the element; traction [joints, n, d], compression
-        and shear along the joint; gap [joints, n]; slip [joints, n], in space [joints, n, 2].
+    quantities : by name, float arrays in SI, stress and traction compression positive.
+        Pillar: stress [sections, n]; velocity, displacement [points, n], along y.
+        Pillar in space: velocity, displacement, rotation [points, n, 3], along or about x, y, z;
+        shear [sections, n, 2], along x, z, the force on the far side over the area.
+        Rock mass in d dimensions: velocity, displacement [points, n, d]; stress [points, n, 3 or
+        6], the mean over the block, or of the element; traction [joints, n, d], compression and
+        shear along the joint; gap [joints, n]; slip [joints, n], in space [joints, n, 2].
         Displacement, gap and slip are relative to the state at the start of the run.
     energy : float array [len(terms), n], J, in the plane per metre of thickness; work is the energy
         input of loads and waves, the other terms its stored and dissipated parts.
     terms : names of the rows of `energy`, from TERMS.
-    errors : for a computed solution, an upper bound on the root-mean-square error over time
-        of each waveform, by its quantity and in its unit: float arrays of that quantity's shape
-        without time. A closed form has none.
+    errors : of a computed solution, upper bounds on the root-mean-square error over time of each
+        waveform, by quantity, in its unit and in its shape without time. A closed form has none.
     attributes : numbers and texts about the run (dt, steps, seconds, ...).
 
-    Joint receivers are identified by their places in [record]. Traction acts on the side that the
-    joint's normal points into, whose motion relative to the other side is gap and slip. The tangent
-    is the normal rotated to the left. In space the normal points up (of a vertical joint to the
-    north, or else east), and the tangents are the strike, horizontal, and the line of dip, upwards,
-    in a right-handed frame with it.
+    Joint receivers are identified by their places in [record]. Traction acts on the side into which
+    the joint's normal points; gap and slip are the motion of this side relative to the other. In
+    the plane the tangent is the normal rotated to the left. In space the normal points up (of a
+    vertical joint to the north, or else east); the tangents are the horizontal strike and the line
+    of dip, upwards, in a right-handed frame.
     """
     coords, variables = _receivers(scene) | {"time": (("time",), time)}, {}
     for name, values in quantities.items():
@@ -132,8 +128,8 @@ def _receivers(scene: AnyScene) -> Coordinates:
 def _variable(
     scene: AnyScene, name: str, time: tuple[str, ...], values: np.ndarray
 ) -> tuple[tuple[str, ...], np.ndarray]:
-    """Return a quantity and its dimensions: receivers, time, and components where it has several;
-    motion along one axis has this one."""
+    """Return a quantity and its dimensions: receivers, time, and components if it has several;
+    motion along one axis gets a dimension of one component."""
     if scene.is_column:
         receivers = "stress_y" if name in OF_SECTIONS else "velocity_y"
     else:
@@ -145,17 +141,16 @@ def _variable(
 
 
 def labelled(variables: Mapping[str, tuple]) -> dict[str, tuple]:
-    """Return variables (dimensions, values) with their names and units for plots."""
+    """Return variables (dimensions, values) with long names and units as attributes."""
     return {name: (*variable, label(name)) for name, variable in variables.items()}
 
 
 def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the attributes of a result: its scene and solver, its initial state, `own` attributes
-    of the run, and the scene itself, last because of its length.
+    """Return the attributes of a result: scene, solver, initial state, `own` attributes of the run,
+    and the scene as JSON, last because of its length.
 
     starts : "unloaded", "prestressed" or "at rest under gravity". prestress : in every section of a
-    pillar, Pa, if any; in a rock mass the first sample is the initial state, from which
-    displacement counts.
+    pillar, Pa, if any; in a rock mass it is in the stress of the first sample.
     """
     text, pressed = scene.model_dump_json(), getattr(scene.prestress, "normal", None)
     starts = "unloaded" if scene.prestress is None else "prestressed"
@@ -184,10 +179,10 @@ def energy_residual(result: xr.Dataset) -> float:
 def imbalance(energy: np.ndarray, terms: Sequence[str]) -> float:
     """Return the largest imbalance of an energy ledger [len(terms), n] over the largest work.
 
-    Both are relative to the first sample, which includes the energy of a static state. Without
-    work, as under gravity only, the largest term is used instead. If it is larger, `AT_REST` of the
-    static state's energy is the denominator: round-off of the sums, tens of epsilon of that energy,
-    reaches the work under a prestress of millions of times the load.
+    Both are changes since the first sample, which has the energy of a static state. Without work,
+    as under gravity only, the largest term replaces it. The denominator is at least `AT_REST` times
+    the static energy: under a prestress of millions of times the load, round-off of the sums, tens
+    of epsilon of the static energy, is as large as the work.
     """
     left, work, largest, least = _ledger(energy, terms)
     scale = max(work or largest, least)
@@ -195,8 +190,8 @@ def imbalance(energy: np.ndarray, terms: Sequence[str]) -> float:
 
 
 def _ledger(energy: np.ndarray, terms: Sequence[str]) -> tuple[float, float, float, float]:
-    """Return the largest imbalance, work and term since the first sample, and the least energy, J,
-    that these resolve."""
+    """Return the largest imbalance, work and term since the first sample, and the least energy that
+    round-off of the static energy leaves meaningful, J."""
     since = energy - energy[:, :1]
     work = since[list(terms).index("work")]
     parts = since.sum(axis=0) - 2 * work, work, since, AT_REST * energy[:, 0]
@@ -205,8 +200,8 @@ def _ledger(energy: np.ndarray, terms: Sequence[str]) -> tuple[float, float, flo
 
 
 def open_ledger(result: xr.Dataset) -> str:
-    """Return a warning of an energy ledger that is open by more than `MOST_OPEN` of its largest
-    term; "" where it closes."""
+    """Return a warning if the imbalance of the ledger exceeds `MOST_OPEN` of its largest term, else
+    ""."""
     left, _, largest, least = _ledger(result["energy"].values, result["term"].values.tolist())
     scale = max(largest, least)
     if not left > MOST_OPEN * scale:

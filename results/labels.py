@@ -10,7 +10,7 @@ RECEIVERS = {
     "joint_point": ("joint_point_x", "joint_point_y", "joint_point_z"),
 }
 AXES = ("x", "y", "z")
-#: Quantities of one unit, whose amplitudes are compared with each other.
+#: Groups of quantities with the same unit and comparable amplitudes.
 UNITS = (
     ("stress", "shear", "traction"),
     ("velocity",),
@@ -18,7 +18,7 @@ UNITS = (
     ("rotation",),
 )
 QUANTITIES = tuple(quantity for unit in UNITS for quantity in unit)
-#: Peaks of a result, with the quantities that they are of.
+#: Peaks of a result, with their quantities.
 PPV, PEAK_STRESS = "PPV", "peak stress"
 PEAKS = {PPV: ("velocity",), PEAK_STRESS: ("stress", "shear")}
 
@@ -62,8 +62,8 @@ LABELS = {
 
 
 def label(name: str) -> dict[str, str]:
-    """Return the attributes `long_name` and, for a physical quantity, `units` of a variable, or of
-    NAME_error, the bound of its error."""
+    """Return the attributes `long_name` and, for a physical quantity, `units` of a variable or of
+    its error bound NAME_error."""
     long_name, unit = LABELS[name.removesuffix("_error")]
     if name.endswith("_error"):
         what = re.split(",| of | on ", long_name)[0]  # "shear stress" on the far side

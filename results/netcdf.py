@@ -1,4 +1,4 @@
-"""NetCDF files, read into memory if they fit."""
+"""Reading of NetCDF files into memory."""
 
 from collections.abc import Collection
 from pathlib import Path
@@ -8,13 +8,13 @@ import xarray as xr
 
 from jointwave.cases.size import memory, require, within
 
-MAGIC = (b"CDF", b"\x89HDF")  # what NetCDF 3 and 4 begin with
-COPIES = 3  # of a variable: as it is stored, decoded, and in double precision
+MAGIC = (b"CDF", b"\x89HDF")  # first bytes of NetCDF 3 and 4
+COPIES = 3  # of a variable in memory: stored, decoded, and in double precision
 LIBRARIES = 300_000_000  # bytes of address space for the reading libraries
 
 
 def is_netcdf(path: Path) -> bool:
-    """Return whether a file begins as NetCDF does."""
+    """Return whether a file has the first bytes of NetCDF."""
     if not path.is_file():
         return False
     with path.open("rb") as file:
@@ -24,14 +24,14 @@ def is_netcdf(path: Path) -> bool:
 def load_netcdf(path: Path, wanted: Collection[str] | None = None, **decoding: Any) -> xr.Dataset:
     """Return a NetCDF file, or only its `wanted` variables, in memory.
 
-    decoding : for xarray.open_dataset. Raises MemoryError if they would take more memory than a run
-    may, OSError if there is no regular file, any error of the library for a damaged one.
+    decoding : for xarray.open_dataset. Raises MemoryError beyond the memory of a run, OSError
+    without a regular file, and any error of the library for a damaged file.
     """
     if path.exists():
         if not path.is_file():
             raise OSError("it is not a regular file")
         require(path.stat().st_size, "the file")
-    # Coordinates are read when the file is opened, whatever size its header says.
+    # Opening reads the coordinates, whatever size the header gives.
     with within(LIBRARIES + memory()), xr.open_dataset(path, **decoding) as lazy:
         others = [] if wanted is None else [name for name in lazy.variables if name not in wanted]
         found = lazy.drop_vars(others)

@@ -1,4 +1,4 @@
-"""Snapshots of the whole body, the common form of field results, and their storage in results."""
+"""Snapshots of the whole body: their common form, recording, and storage in results."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -28,14 +28,14 @@ OVER_TIME = tuple(name for name, dims in DIMENSIONS.items() if dims[0] == "field
 class Snapshots(NamedTuple):
     """The whole body at some instants, on linear cells; blocks share no nodes.
 
-    time : float array [snapshots], s.
-    points : float array [nodes, 3], x, y, z of the unloaded body, m.
+    time : [snapshots], s.
+    points : x, y, z of the unloaded body [nodes, 3], m.
     kind : of the cells, in meshio's names: "line", "triangle", "quad", "tetra", "hexahedron".
-    cells : int32 array [cells, corners], nodes in VTK's order.
-    block : int32 array [cells], the block of each cell, 0 at the loaded end.
-    displacement, velocity : float arrays [snapshots, nodes, 3], m and m/s.
-    stress : float array [snapshots, cells], Pa, axial, compression positive; of a rock mass
-    [snapshots, cells, components], those of `stress_components`; None if unknown.
+    cells : int32 [cells, corners], nodes in VTK's order.
+    block : int32 [cells], the block of each cell, 0 at the loaded end.
+    displacement, velocity : [snapshots, nodes, 3], m and m/s.
+    stress : axial [snapshots, cells], Pa, compression positive; of a rock mass the components of
+    `stress_components` [snapshots, cells, components]; None if unknown.
     """
 
     time: np.ndarray
@@ -48,7 +48,7 @@ class Snapshots(NamedTuple):
     stress: np.ndarray | None
 
     def since(self, first: int) -> "Snapshots":
-        """Return the snapshots without those before the `first`."""
+        """Return the snapshots from `first` on."""
         over_time = {name: getattr(self, name) for name in ("time", *OVER_TIME)}
         return self._replace(**{k: v[first:] for k, v in over_time.items() if v is not None})
 
@@ -59,7 +59,7 @@ Frame = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 class SnapshotRecorder:
-    """The body at every `every`-th sample of a run, in `frames`."""
+    """Records the body at every `every`-th sample of a run in `frames`."""
 
     def __init__(
         self,
@@ -69,9 +69,9 @@ class SnapshotRecorder:
         capture: Callable[[int], Frame],
         joints: np.ndarray | None = None,
     ) -> None:
-        """nodes : of a snapshot; raises SceneError for too many snapshots of them. body : its
-        points [nodes, d], m, and kind, cells and block as in `Snapshots`. capture : returns a
-        sample. joints : ends of those whose slip is shown [joints, 2, d], m; None without."""
+        """nodes : of a snapshot. body : points [nodes, d], m, and kind, cells and block as in
+        `Snapshots`. capture : returns the frame of a sample. joints : ends of joints that show slip
+        [joints, 2, d], m; None without. Raises SceneError for too many snapshots."""
         refuse_beyond_room(scene, nodes)
         self.every, self.scene, self.body = samples_between(scene) or 1, scene, body
         self.capture, self.joints = capture, joints
@@ -87,8 +87,8 @@ class SnapshotRecorder:
         self.frames[:] = [copied(self.capture(0)) for _ in range(0, samples, self.every)]
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
-        """Return the run's result with its snapshots; in a rock mass displacement and slip count
-        from the first of them."""
+        """Return the run's result with its snapshots; in a rock mass displacement and slip are
+        relative to the first."""
         time = result["time"].values[:: self.every]
         u, v, stress, slip = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
         if not self.scene.is_column:
@@ -124,7 +124,7 @@ def snapshots(
 
 
 def in_space(values: np.ndarray) -> np.ndarray:
-    """Return vectors [..., 3] along x, y, z of vectors [..., 1] along y or [..., 2] along x, y."""
+    """Return vectors [..., 3] from vectors [..., 1] along y or [..., 2] along x, y."""
     found = np.zeros((*values.shape[:-1], 3))
     found[..., AXES[values.shape[-1]]] = values
     return found
@@ -140,7 +140,7 @@ def refuse_beyond_room(scene: AnyScene, nodes: int) -> None:
 
 
 def with_snapshots(result: xr.Dataset, s: Snapshots) -> xr.Dataset:
-    """Return a result with snapshots as variables field_NAME, on dimensions of their own."""
+    """Return a result with snapshots as variables field_NAME."""
     variables = {
         f"field_{name}": (dimensions[: values.ndim], values)
         for name, dimensions in DIMENSIONS.items()

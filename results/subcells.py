@@ -1,4 +1,4 @@
-"""Linear cells between the nodes of a higher-order cell, for viewers without such cells."""
+"""Subdivision of higher-order cells into linear cells, for viewers."""
 
 from itertools import permutations, product
 
@@ -49,8 +49,8 @@ def _boxes(corners: list[tuple[int, ...]], order: int) -> list[list[list[int]]]:
 def _simplices(dim: int, order: int) -> list[list[list[int]]]:
     """Return the lattice places of the corners of every simplex (Freudenthal's subdivision).
 
-    Sums s_i = x_i + ... + x_dim turn the simplex into s_1 >= s_2 >= ..., a union of the paths from
-    corner to opposite corner of unit boxes.
+    In the sums s_i = x_i + ... + x_dim the simplex is s_1 >= s_2 >= ..., a union of the simplices
+    along monotone paths between opposite corners of unit boxes.
     """
     parts = []
     for start, steps in product(
