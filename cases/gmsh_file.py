@@ -57,7 +57,7 @@ class Tagged(NamedTuple):
     kind : cell type: "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
     cells : int array [cells, corners], vertex numbers in basix's corner order.
     facets : for each group "joint...", "start" and "end", int arrays [facets, facet corners] of
-    vertex numbers in any order.
+        vertex numbers in any order.
     """
 
     x: np.ndarray

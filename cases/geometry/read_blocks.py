@@ -42,7 +42,7 @@ class Given(NamedTuple):
 
     x : float array [v, d], m; two columns if all z are equal.
     blocks : the parts of each block. A part is a list of polygons of vertices: one in the plane,
-    the bounding faces in space, all counter-clockwise as seen from outside, or all clockwise.
+        the bounding faces in space, all counter-clockwise as seen from outside, or all clockwise.
     names : of the blocks, for messages.
     joints : facets as vertices, for each group "joint NAME" in lower case; None without groups.
     """

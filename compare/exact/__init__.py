@@ -1,1 +1,1 @@
-"""Exact solutions, one file each: formula, source, validity, `applies(scene)`, `solve(scene)`."""
+"""Exact solutions, a file each: formula, source, validity, `applies(scene)`, `solve(scene)`."""

@@ -1,4 +1,4 @@
-"""The excitation of a scene, and the physics that an exact solution of it must cover."""
+"""Conditions under which an exact solution covers a scene, and the scene's excitation."""
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import LoadHistory
@@ -8,7 +8,7 @@ from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.solvers.record import Answer
 
-#: Physics in groups, as `holds` names them.
+#: Groups of physics by their names in `holds`.
 DAMPED = ("damped joints", "damped rock")
 LAYERS = ("thick layers", "soft layers", "stiff layers")
 
@@ -16,8 +16,8 @@ LAYERS = ("thick layers", "soft layers", "stiff layers")
 def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
     """Return whether a solution applies to a scene, or the first reason why not.
 
-    held : physics that the solution covers, of the names below. against : other conditions that
-    exclude it, each with its reason.
+    held : physics that the solution covers, by the names below. against : other conditions that
+    exclude it, with reasons.
     """
     p, laws = calibrate(scene), (scene.joints, *scene.layers)
     physics = {part.name: (any(map(part.of, laws)), part.words) for part in PARTS} | {
@@ -33,7 +33,7 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
         "no tension": (not p.tension.all(), "a joint carries no tension"),
         "damped joints": (
             p.joint_time_constant is not None and p.joint_time_constant.any(),
-            "the joints are damped",  # in damped rock all of them
+            "the joints are damped",  # all of them in damped rock
         ),
         "damped rock": (bool(p.time_constant), "the rock is damped"),
         "quality factor": (scene.rock.quality_factor is not None, "the rock has a quality_factor"),

@@ -1,9 +1,9 @@
 """Exact response of a linear system x' = A x + b f(t) from rest, by matrix exponentials.
 
-Over each interval of length h, x(t + h) = e^{Ah} x(t) + int_0^h e^{A(h - s)} b f(t + s) ds. As a
-function of s, e^{A(h - s)} b is entire, so its values at the Gauss-Legendre nodes of the interval
-give it everywhere to round-off; only f determines the quadrature, which is split where f is not
-smooth (Moler & Van Loan, SIAM Review 45, 2003, for the exponential).
+Over each interval of length h, x(t + h) = e^{Ah} x(t) + int_0^h e^{A(h - s)} b f(t + s) ds. e^{A(h
+- s)} b is an entire function of s, so its values at the Gauss-Legendre nodes determine it to
+round-off; only f limits the quadrature, which is split where f is not smooth (Moler & Van Loan,
+SIAM Review 45, 2003, for the exponential).
 """
 
 from functools import cache
@@ -20,18 +20,18 @@ from scipy.sparse.linalg import expm_multiply
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.size import require
 
-NEGLIGIBLE = 1e-18  # of a propagator whose largest entries are about 1: below round-off
-NOISE = 256 * float(np.finfo(float).eps)  # of the twin, in each interval
-SMALL = 100  # states of which a full matrix is faster than a sparse one
-MORE_POINTS = 7  # of integration, for the twin
+NEGLIGIBLE = 1e-18  # entries of a propagator of order 1 that are below round-off
+NOISE = 256 * float(np.finfo(float).eps)  # relative perturbation of the twin per interval
+SMALL = 100  # states below which a full matrix is faster than a sparse one
+MORE_POINTS = 7  # additional integration points of the twin
 PART, TERMS = 3.5, 30  # largest |A| t of a Taylor series, and its most terms: 3.5^30 / 30! = 8e-17
 SAFETY = 4.0  # factor on the difference of a solution and its twin
 _points = cache(leggauss)
 
 
 def twins(matrix: Any, vector: np.ndarray, load: LoadHistory, times: np.ndarray) -> np.ndarray:
-    """Return x at `times`, and that of a twin whose difference shows the error, [2, n, m]: the twin
-    has more points of integration and, in every interval, each state perturbed by NOISE of itself,
+    """Return x at `times`, and a twin whose difference shows the error, [2, n, m]: the twin has
+    more integration points, and in every interval a relative perturbation NOISE of each state,
     always with the same sign.
 
     Parameters
@@ -52,7 +52,7 @@ def twins(matrix: Any, vector: np.ndarray, load: LoadHistory, times: np.ndarray)
 
 
 def _coupled(A: csr_array, vector: np.ndarray, load: LoadHistory, times: np.ndarray) -> np.ndarray:
-    """Return the same of states that are coupled with each other."""
+    """Return the same for states that are all coupled."""
     h = float(times[1] - times[0])
     count = 12 + ceil(h * abs(A).sum(axis=0).max())
     size = float(len(vector))
@@ -78,16 +78,14 @@ def _coupled(A: csr_array, vector: np.ndarray, load: LoadHistory, times: np.ndar
 
 
 def bound(one: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """Return the bound on the root-mean-square error of waveforms [..., n] from their twins."""
+    """Return a bound on the root-mean-square error of waveforms [..., n] from their twins."""
     apart = np.sqrt(np.mean((one - twin) ** 2, axis=-1))
     return SAFETY * apart + 4 * np.finfo(float).eps * np.abs(one).max(axis=-1, initial=0.0)
 
 
 def _moved(A, vector: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return e^{A t} b at all times t [n] (s), [m, n], by Taylor's series over equal parts of each.
-
-    All at once: scipy's `expm_multiply` takes one time, and longer to prepare than to multiply.
-    """
+    """Return e^{A t} b at all times t [n] (s), [m, n], by Taylor series over equal parts of each
+    time. scipy's `expm_multiply` takes one time only, and longer to prepare than to multiply."""
     parts = max(1, ceil(abs(A).sum(axis=0).max() * times.max() / PART))
     found = np.repeat(vector[:, None], len(times), axis=1)
     for _ in range(parts):
@@ -109,8 +107,8 @@ def gauss(h: float, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _load_on_nodes(load, starts, h, nodes, weights) -> np.ndarray:
-    """Return the weights [intervals, nodes] that integrate a smooth function times the load: in an
-    interval with breaks those of the load's projection on polynomials, piece by piece."""
+    """Return weights [intervals, nodes] that integrate a smooth function times the load; in an
+    interval with breaks, from the load's piecewise projection on polynomials."""
     shares, count = weights * load.value(starts[:, None] + nodes), len(nodes)
     project = (2 * np.arange(count) + 1) * legvander(2 * nodes / h - 1, count - 1)
     at = (np.asarray(load.breaks) - starts[0]) / h

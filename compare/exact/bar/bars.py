@@ -1,17 +1,17 @@
-"""Bars of rock with interfaces, by marching in the Laplace variable (`laplace`).
+"""Bars of rock with interfaces, by recursion in the Laplace variable (`laplace`).
 
-The homogenised bar has the rock mass's modulus E_eq (1 + s eta); a soft layer is an interface with
-the additional compliance 1/K = 1/K'_n(soft) - 1/K'_n(regular) and its own time constant, because
-the bar already contains one ordinary joint there. Segments of other rock are bars of their own,
+The homogenised bar has the rock mass's modulus E_eq (1 + s eta). The bar already contains an
+ordinary joint at a soft layer, so the layer is an interface with the additional compliance 1/K =
+1/K'_n(soft) - 1/K'_n(regular) and its own time constant. Segments of other rock are separate bars,
 bonded together.
 
-The jointed bar is intact rock (E, Kelvin-Voigt eta of the rock) between joints of their own
+The jointed bar is intact rock (E, Kelvin-Voigt eta of the rock) between joints with their own
 stiffness K_n (Guo & Li 2002, equation 4) and time constants; the dashpots of quiet and matched ends
-have the rock mass's impedance. This is the physics that both the rigid blocks and the homogenised
-bar approximate (Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR 95, 1990).
+have the rock mass's impedance. Rigid blocks and the homogenised bar both approximate this bar
+(Schoenberg, JASA 68, 1980; Pyrak-Nolte et al., JGR 95, 1990).
 
 Valid for any load; every joint carries tension. In the homogenised bar no layer is stiffer than the
-ordinary joints; the jointed one needs intact_modulus.
+ordinary joints; the jointed bar needs intact_modulus.
 """
 
 from collections.abc import Mapping
@@ -35,8 +35,8 @@ HELD = ("prestress", "soft layers", "segments", "scatter", "quality factor", *DA
 
 
 def applies(scene: Scene, resolved: bool) -> Answer:
-    """Return whether a scene's bar is linear and, if its joints are not resolved, homogenised rock
-    with layers that add compliance; else whether its intact rock is known."""
+    """Return whether the scene's bar is linear and, if joints are resolved, its intact rock known,
+    else its layers softer than ordinary joints."""
     p = calibrate(scene)
     if resolved:
         unknown = p.own_stiffness is None, "rock.intact_modulus is not given"
@@ -51,8 +51,8 @@ def applies(scene: Scene, resolved: bool) -> Answer:
 
 
 def bar_of(scene: Scene, resolved: bool) -> Bar:
-    """Return the intact rock of a scene with its N - 1 joints, behind half a joint where an end is
-    matched; if these are not resolved, its homogenised bar with soft layers as interfaces."""
+    """Return the intact rock of a scene with its N - 1 joints, and half a joint before a matched
+    end; if joints are not resolved, the homogenised bar with soft layers as interfaces."""
     p = calibrate(scene)
     model, moduli = "equivalent", [one.modulus for one in p.each]
     compliance, etas = p.excess_compliance, p.excess_time_constant
@@ -63,7 +63,7 @@ def bar_of(scene: Scene, resolved: bool) -> Bar:
         etas = np.zeros_like(p.joint_y) if own is None else own
     start, end = (
         end_of(kind, rock.impedance, 0.5 / rock.regular_own_stiffness, rock.time_constant or 0.0)
-        if resolved  # half a joint is before it
+        if resolved  # half a joint lies in front of a matched end
         else end_of(kind, rock.impedance)
         for kind, rock in ((scene.ends.start, p.at_start), (scene.ends.end, p.at_end))
     )

@@ -1,13 +1,13 @@
 """Undamped homogenised bar by images (d'Alembert; Graff, Wave Motion in Elastic Solids, 1975).
 
-The end stress f enters with amplitude g and travels back and forth in the bar, multiplied at each
-end by that end's reflection coefficient of stress: R = -1 free, +1 fixed, 0 quiet or matched.
+The end stress f enters with amplitude g and travels to and fro in the bar, multiplied at each end
+by its reflection coefficient of stress: R = -1 free, +1 fixed, 0 quiet or matched.
 
     sigma = g sum_k (R_start R_end)^k [f(t - (2kL + y)/c) + R_end f(t - (2(k+1)L - y)/c)]
     v = (g/Z) sum_k (R_start R_end)^k [f(t - (2kL + y)/c) - R_end f(t - (2(k+1)L - y)/c)]
 
-g = 1 at a free start; behind a dashpot Z (quiet or matched start) half the stress goes into the
-dashpot, g = 1/2. Displacement is v with the load's impulse in place of f.
+g = 1 at a free start; at a quiet or matched start half of the stress is taken by the dashpot Z, g =
+1/2. Displacement is v with the load's impulse instead of f.
 
 Valid for any load; no dashpots, no soft layers, every joint carries tension.
 """
@@ -29,7 +29,7 @@ from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, t
 from jointwave.results.dataset import dataset
 
 Signal = Callable[[np.ndarray], np.ndarray]
-MOST_TRIPS = 1_000_000  # through the bar and back
+MOST_TRIPS = 1_000_000  # round trips through the bar
 
 #: Reflection coefficient of stress at an end of the bar.
 REFLECTION = {"free": -1.0, "fixed": 1.0, "quiet": 0.0, "matched": 0.0}
@@ -63,10 +63,10 @@ def solve(scene: Scene) -> xr.Dataset:
 
 
 class Front(NamedTuple):
-    """Undamped rock from the loaded end on, which reflects kinks and jumps at its two ends.
+    """Undamped rock at the loaded end, in which kinks and jumps of the load travel to and fro.
 
     length, speed, impedance : m, m/s, Pa s/m. start, end : reflection coefficients of stress.
-    enters : the fraction of the wave that enters. on_end : its share in the motion at its end.
+    enters : share of the wave that enters. on_end : share of this part in the motion at its end.
     """
 
     length: float
@@ -85,8 +85,8 @@ class Front(NamedTuple):
     def waves(
         self, load: LoadHistory, times: np.ndarray, stress_y: list[float], velocity_y: list[float]
     ) -> list[np.ndarray]:
-        """Return its stress, velocity and displacement [receivers, n] under a load that is zero
-        before t = 0."""
+        """Return stress, velocity and displacement [receivers, n] under a load that is zero before
+        t = 0."""
         there, back = self._travelling(load.value, np.array(stress_y), times)
         found = [there + back]
         for signal in (load.value, load.impulse):

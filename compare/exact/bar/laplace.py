@@ -1,17 +1,17 @@
-"""The bars of `compare.exact.bar.transfer` over time, by inversion of their Laplace transforms.
+"""The bars of `compare.exact.bar.transfer` over time, by inversion of Laplace transforms.
 
-By `compare.exact.inversion`, with s = -i omega. Its errors and their bounds:
-- A window of TAIL durations wraps the later motion, reduced by the factor WRAPPED, and amplifies
+By `compare.exact.inversion`, with s = -i omega. Errors and their bounds:
+- A window of TAIL durations wraps later motion, reduced by the factor WRAPPED, and amplifies
   round-off as much as the exponential window amplifies the end of the record.
 - The load's transform is that of its exact means over the fine steps, divided by the transform of
-  such a step: sampling loses no digits except at the highest frequencies.
+  such a step: sampling loses digits only at the highest frequencies.
 - Frequencies end at pi/dt, tapered so that no ringing grows under the window. Smooth parts are
-  unaffected; a kink's error is its change of slope times
-  dt/(0.61 pi^2). The steps are finer than necessary where that is cheap. In undamped rock, kinks
-  and jumps of the load travel to and fro in front of the first joint, which reflects them like a
-  free end: this part is summed as `images`, and the rest, smoother by one order, is inverted.
-The inversion with half of the frequencies has at least twice the error and thus gives the bound:
-twice the largest difference of the two within some fine steps of each sample.
+  unaffected; a kink's error is its change of slope times dt/(0.61 pi^2). Steps are finer than
+  necessary where that is cheap. In undamped rock, kinks and jumps of the load travel to and fro in
+  front of the first joint, which reflects them like a free end: this part is summed as `images`,
+  and the rest, smoother by one order, is inverted.
+The inversion with half of the frequencies has at least twice the error. The bound is twice the
+largest difference of the two within some fine steps of each sample.
 """
 
 from dataclasses import replace
@@ -28,15 +28,15 @@ from jointwave.compare.exact.inversion import Window, taper, window_of
 
 TAIL = 1.5
 WRAPPED = 1e-10
-NODE = 0.5  # of each bin: causal motion is real at omega = 0
+NODE = 0.5  # place in each bin: the midpoint, as causal motion is real at omega = 0
 STEPS_PER_PERIOD = 1600
 STEPS_PER_DURATION = 20_000  # where the load has no period
-FINER = 4  # times, at most: errors of shipped scenes are below 1e-7 of their peaks
-CHEAP = 12_000_000  # instants times nodes, about half a second
-MOST_TRIPS = 5000  # of the part in front of the first joint, to and fro
+FINER = 4  # most refinement of steps: errors of shipped scenes are below 1e-7 of their peaks
+CHEAP = 12_000_000  # instants times nodes that take about half a second
+MOST_TRIPS = 5000  # round trips in front of the first joint
 SAFETY = 2.0  # factor on the difference of the two inversions
-NEAR = 17  # fine steps within which its maximum is taken
-FLOOR = 4e-9  # of a quantity's peak: the window's wrapping and the round-off that it amplifies
+NEAR = 17  # fine steps within which the largest difference is taken
+FLOOR = 4e-9  # error by wrapping and amplified round-off, over a quantity's peak
 
 
 def bounded(
@@ -50,8 +50,8 @@ def bounded(
     """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] at `times`, and bounds
     on their root-mean-square errors [receivers].
 
-    `times` are equally spaced from 0; `period` (s) is that of the load, if it has one. The
-    velocity on an interface is the mean of both sides.
+    `times` are equally spaced from 0; `period` (s) is that of the load, if it has one. Velocity on
+    an interface is the mean of both sides.
     """
     from scipy.ndimage import maximum_filter1d
 
@@ -89,7 +89,7 @@ def bounded(
 
 
 def _transform(load: LoadHistory, window: Window) -> np.ndarray:
-    """Return the load's transform, from its means over the fine steps, with exact jumps."""
+    """Return the load's transform from its means over the fine steps, with jumps in closed form."""
     dt, t, s, jumps = window.step, window.times, -1j * window.omega(NODE), _jumps(load)
     edges = np.append(t, t[-1] + dt) - dt / 2
     impulse = load.impulse(edges)
@@ -114,7 +114,7 @@ def _jumps(load: LoadHistory) -> list[tuple[float, float]]:
 
 def _front(bar: Bar, duration: float) -> tuple[Front, Bar] | None:
     """Return the part of a bar in front of its first joint, in which kinks of the load travel to
-    and fro, and as a bar; None without one."""
+    and fro, as `Front` and as a bar; None without one."""
     first, *others = bar.rocks
     if first.time_constant or first.relaxation is not None:
         return None
@@ -143,7 +143,7 @@ def _front(bar: Bar, duration: float) -> tuple[Front, Bar] | None:
 
 
 def _fine_step(times: np.ndarray, period: float | None, nodes: int) -> tuple[float, int]:
-    """Return the fine step (s) and steps per sample; nodes : computed at each instant."""
+    """Return the fine step (s) and the fine steps per sample; nodes : computed at each instant."""
     interval, duration = times[1] - times[0], times[-1]
     longest = duration / STEPS_PER_DURATION
     if period is not None:

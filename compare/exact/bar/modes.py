@@ -4,9 +4,9 @@
     u = (1/(rho L)) [int int f + 2 sum_n cos(n pi x) q_n]
     sigma = (2 c / L) sum_n sin(n pi x) omega_n (q_n + eta q_n')
 
-The modal damping ratio is eta omega_n / 2 (Graff, Wave Motion in Elastic Solids, 1975); above 1
-the roots r of r^2 + eta omega_n^2 r + omega_n^2 are real. q_n follows from
-C(r) = int_0^t f(s) e^{r (t - s)} ds.
+The modal damping ratio is eta omega_n / 2 (Graff, Wave Motion in Elastic Solids, 1975); above 1 the
+roots r of r^2 + eta omega_n^2 r + omega_n^2 are real. q_n follows from C(r) = int_0^t f(s) e^{r (t
+- s)} ds.
 
 Without damping this is the series of Guo & Li (2002), appendix (5a), (5b), with the prefactor of a
 stress and t > T in (5b): with T_e = cycles T, omega_n q_n = p0 g_n,
@@ -43,10 +43,10 @@ from jointwave.results.dataset import dataset
 
 Waves = dict[str, Any]
 SAFETY = 2.0
-ROUND_OFF = 1e-12, 1e-9  # of a waveform's peak, without and with damping
-RUN = 64  # samples
-NEAR = sqrt(np.finfo(float).eps)  # relative distance to resonance below which the limit is nearer
-SPLIT = 1e-5  # least distance of a mode's roots: q_n is even in it, so it costs 1e-10
+ROUND_OFF = 1e-12, 1e-9  # over a waveform's peak, without and with damping
+RUN = 64  # samples whose exponentials share factors
+NEAR = sqrt(np.finfo(float).eps)  # relative distance to resonance below which its limit is used
+SPLIT = 1e-5  # least separation of a mode's roots: q_n is even in it, so the error is 1e-10
 
 
 def applies(scene: Scene) -> Answer:
@@ -57,7 +57,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def applies_damped(scene: Scene) -> Answer:
-    """Return whether the scene's homogenised bar is damped, free, uniform, and under a sine."""
+    """Return whether the scene's homogenised bar is damped, free, uniform and under a sine."""
     held = ("prestress", "thick layers", "fixed start", *DAMPED)
     undamped = not calibrate(scene).time_constant, "the rock is not damped"
     return holds(scene, held, undamped) and _under_a_sine(scene)
@@ -72,7 +72,7 @@ def _under_a_sine(scene: Scene) -> Answer:
 
 def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
     """Return stress, velocity and displacement of the paper's series after `n_terms` terms, with
-    root-mean-square errors from the closed form and its round-off."""
+    root-mean-square errors against the closed form."""
     (_, found), closed, errors = _summed(scene, n_terms), images.solve(scene), {}
     found["stress"] += static_stress(scene)
     for name, waves in found.items():
@@ -83,8 +83,9 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
 
 
 def solve_damped(scene: Scene, n_terms: int = 500) -> xr.Dataset:
-    """Return stress, velocity and displacement of the damped bar; errors are bounded by the second
-    half of the modes, which equals the remainder if they fall as 1/n^2, thrice it for 1/n^3."""
+    """Return stress, velocity and displacement of the damped bar. The second half of the modes
+    bounds the error: the remainder equals it for a decay as 1/n^2 and is a third of it for
+    1/n^3."""
     from scipy.ndimage import maximum_filter1d
 
     (half, found), errors = _summed(scene, n_terms), {}
@@ -136,8 +137,8 @@ def _summed(scene: Scene, n_terms: int) -> list[Waves]:
 def sums(
     weights: np.ndarray, mode: np.ndarray, eta: float, load: Sine, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return sums [m, times] of weights [m, n] times q_n (Pa s2), and times its rate (Pa s), at
-    equally spaced times for modes [n] (rad/s) and a time constant (s)."""
+    """Return sums [m, times] of weights [m, n] times q_n (Pa s2) and times q_n' (Pa s), at equally
+    spaced times, for modes [n] (rad/s) and a time constant (s)."""
     omega, t = 2 * pi / load.period, np.minimum(times, load.end)
     resonant = (np.abs(mode - omega) < NEAR * omega) & (eta == 0)
     limit = load.amplitude / 2 * weights[:, resonant].sum(axis=1)
@@ -158,7 +159,7 @@ def _convolutions(
     weights: np.ndarray, roots: np.ndarray, load: Sine, times: np.ndarray
 ) -> np.ndarray:
     """Return sums [m, times] of weights [m, n] times C(r) = int_0^t f(s) e^{r (t - s)} ds, for
-    roots that are real or conjugate."""
+    roots that are real or in conjugate pairs."""
     omega, on = 2 * pi / load.period, np.searchsorted(times, load.end)
     k, t = weights * load.amplitude / (roots**2 + omega**2), omega * times[:on]
     during = omega * _exponentials(k, roots, times[:on])
@@ -170,7 +171,7 @@ def _convolutions(
 
 def _exponentials(weights: np.ndarray, roots: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Return sums [m, times] of weights [m, n] times e^{r t} at equally spaced times for roots [n],
-    1/s: the exponentials within a run of times, multiplied by those at the starts of runs."""
+    1/s, as products of exponentials at the starts of runs and within a run."""
     starts, run = times[::RUN], times[:RUN] - times[:1]
     first = weights[:, None] * np.exp(np.outer(starts, roots))
     found = first @ np.exp(np.outer(roots, run))

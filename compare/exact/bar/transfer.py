@@ -1,11 +1,11 @@
-"""The motion of a bar with any joints, layers and ends under an end stress of 1, in the Laplace
-variable s = sigma + i omega.
+"""Motion of a bar with joints, layers and ends under a unit end stress, in the Laplace variable s =
+sigma + i omega.
 
-Rock of modulus E(s), E (1 + s eta) or the modulus of its relaxation mechanisms
-(`cases.material.constant_q`), has impedance z = sqrt(rho E(s)); an interface of
-compliance 1/K and time constant eta_j lets the velocity jump by s sigma / (K (1 + s eta_j)). The
-reflection coefficient of stress R = (Z - z)/(Z + z), Z the impedance seen towards the far end, is
-marched from there (the matrix that carries (v, sigma) from one end overflows):
+Rock of modulus E(s) (E (1 + s eta), or that of its relaxation mechanisms,
+`cases.material.constant_q`) has impedance z = sqrt(rho E(s)); at an interface of compliance 1/K and
+time constant eta_j the velocity jumps by s sigma / (K (1 + s eta_j)). The reflection coefficient of
+stress R = (Z - z)/(Z + z), Z the impedance seen towards the far end, is computed from there
+backwards (the matrix that carries (v, sigma) from one end overflows):
 
     segment of length h:  R_left = R_right e^{-2q},  q = s rho h / z,  wave a_right = a_left e^{-q}
     to rock of another Z: R_left = (p - z(1 - R) - x p) / D,  p = Z(1 + R),
@@ -13,9 +13,9 @@ marched from there (the matrix that carries (v, sigma) from one end overflows):
                           a_right = 2 z a_left / D
     far end:              R = -1 free, (Z - z)/(Z + z) behind a dashpot Z, 1 fixed
 
-The end stress f enters as a = f / (z(1 + R) + Z_start(1 - R)); then sigma = z a (1 + R) and
-v = a (1 - R). These are the impedance recursions of Brekhovskikh (Waves in Layered Media, 1980)
-with the joint of Schoenberg (JASA 68, 1980).
+The end stress f enters as a = f / (z(1 + R) + Z_start(1 - R)); then sigma = z a (1 + R) and v = a
+(1 - R). These are the impedance recursions of Brekhovskikh (Waves in Layered Media, 1980) with the
+joint of Schoenberg (JASA 68, 1980).
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ import numpy as np
 
 from jointwave.cases.material.calibrate import Properties
 
-NEAR = 1e-9  # of a bar's length: nearer nodes are one
+NEAR = 1e-9  # distance over a bar's length below which nodes coincide
 
 
 @dataclass(frozen=True)
@@ -51,16 +51,15 @@ class End:
 
 
 def end_of(kind: str, impedance: float, compliance: float = 0.0, time_constant: float = 0.0) -> End:
-    """Return the end of this kind; only a matched one has a spring in front of its dashpot."""
+    """Return the end of this kind; only a matched end has a spring in front of its dashpot."""
     if kind == "matched":
         return End(impedance, compliance, time_constant)
     return End({"free": 0.0, "fixed": np.inf, "quiet": impedance}[kind])
 
 
 class RockFrom(NamedTuple):
-    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and the
-    mechanisms (`constant_q.Mechanisms`) that make its modulus depend on the Laplace variable, None
-    without."""
+    """The rock of a bar from y (m) on: density (kg/m3), modulus (Pa), Kelvin-Voigt eta (s), and
+    relaxation mechanisms (`constant_q.Mechanisms`) of its modulus, or None."""
 
     y: float
     density: float
@@ -77,8 +76,8 @@ class RockFrom(NamedTuple):
 
 
 def rocks(p: Properties, moduli: list[float], relaxation: Any) -> tuple[RockFrom, ...]:
-    """Return the rocks of a pillar whose segments have these moduli (Pa); in relaxing rock only
-    joints have dashpots."""
+    """Return the rocks of a pillar whose segments have these moduli (Pa); with relaxation
+    mechanisms only joints have dashpots."""
     starts = np.cumsum([0.0, *(one.block_count * one.spacing for one in p.each)])
     etas = [one.time_constant or 0.0 if relaxation is None else 0.0 for one in p.each]
     return tuple(
@@ -126,7 +125,7 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
     joints, compliances, etas = bar.interfaces
     joint_of = dict(zip(np.searchsorted(nodes, joints).tolist(), range(len(joints)), strict=True))
 
-    @lru_cache(16)  # of joints that all differ, some
+    @lru_cache(16)  # keeps memory small if all joints differ
     def jump(compliance: float, time_constant: float) -> np.ndarray:
         return s * compliance / (1 + s * time_constant)
 
@@ -136,7 +135,7 @@ def transfer(bar: Bar, s: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, n
 
     R = bar.end.reflection(s, zs[-1])
     stress, velocity = np.zeros((2, len(places), len(s)), dtype=complex)
-    # Places from the far end on, each with the wave at those farther on over the wave before it.
+    # Places from the far end on, each with the ratio of the wave at the next place to that here.
     reached: list[tuple[np.ndarray, np.ndarray]] = []
     passing = np.ones_like(R)
     for i in range(len(nodes) - 1, -1, -1):

@@ -1,16 +1,15 @@
-"""The motion of blocks by Taylor series, of chains whose joints open and close from one event to
-the next.
+"""Motion of blocks by Taylor series; chains with no-tension joints from event to event.
 
-While no joint opens or closes the blocks are linear, and from rest under static gravity and
-prestress their motion is a Taylor series of x' = A x + b f(t): with steps of STEP over the norm of
-A the term of order ORDER is below round-off (Hairer, Norsett & Wanner, Solving Ordinary
-Differential Equations I, 1993, I.8). The force of a joint and that of its spring are then
-polynomials, of one sign where all their Bernstein coefficients are; else their roots are looked at.
-At the first change of sign the step ends, the joint opens or closes, and the series restarts.
+While no joint opens or closes the blocks are linear, and their motion from rest under static
+gravity and prestress is a Taylor series of x' = A x + b f(t): with steps of STEP over the norm of A
+the term of order ORDER is below round-off (Hairer, Norsett & Wanner, Solving Ordinary Differential
+Equations I, 1993, I.8). The forces of a joint and of its spring are then polynomials; they keep one
+sign if all their Bernstein coefficients have it, otherwise their roots are computed. At the first
+change of sign the step ends, the joint opens or closes, and the series restarts.
 
-A tension-free joint is closed while neither its spring nor spring and dashpot together pull. A
-damped one opens when their sum vanishes, with its spring still compressed, and closes when the gap
-vanishes, immediately with the force of its dashpot.
+A no-tension joint is closed while neither its spring nor spring and dashpot together are in
+tension. A damped joint opens when their sum vanishes, with its spring still compressed, and closes
+when the gap vanishes, at once with the force of its dashpot.
 """
 
 from collections.abc import Callable
@@ -29,25 +28,24 @@ from jointwave.compare.exact.blocks.system import BlockSystem
 
 ORDER = 24
 STEP = 2.0  # over the norm of A: the last term is 2^24 / 24! = 3e-17
-LOAD_STEP = 1 / 24  # of the load's period: its interpolation error is below 1e-15
-SETTLED = 4 / 3  # of the time at which a wavelet has fallen to 1e-8: it is 1e-24 then
-LEAST = 1e-6  # of a step: minimum time between changes of a joint that has just changed twice
-NOISE = 1024.0  # units of round-off of every step that bound what it does to the motion
-NEGLIGIBLE = 1e-18  # of the largest coefficient
-NOW = 1e-14  # of a step: a nearer root is that of its beginning, or round-off
-REAL = 1e-6  # largest imaginary part of a root that counts: round-off parts two that are close
+LOAD_STEP = 1 / 24  # step over the load's period: its interpolation error is below 1e-15
+SETTLED = 4 / 3  # end of a wavelet (1e-24) over the time at which it has fallen to 1e-8
+LEAST = 1e-6  # least time, in steps, between changes of a joint that has just changed twice
+NOISE = 1024.0  # perturbation of every step of the twin, in units of round-off
+NEGLIGIBLE = 1e-18  # coefficients that are dropped, over the largest
+NOW = 1e-14  # roots nearer to the step's start, in steps, are its own event or round-off
+REAL = 1e-6  # largest imaginary part of a real root: round-off splits two close roots
 
 _NODES = (1 + chebpts1(10)) / 2
 _POWERS = np.vander(_NODES, increasing=True)
-#: From the coefficients of powers to those of Bernstein's polynomials (Farouki 2012).
+#: From power coefficients to Bernstein coefficients (Farouki 2012).
 _BERNSTEIN = np.array(
     [[comb(i, k) / comb(ORDER, k) for k in range(ORDER + 1)] for i in range(ORDER + 1)]
 )
 
 
 class Loads(NamedTuple):
-    """Several loads: their values [n, loads] at times [n] (s), and times at which they are not
-    smooth."""
+    """Several loads: values [n, loads] at times [n] (s), and times at which they are not smooth."""
 
     value: Callable[[np.ndarray], np.ndarray]
     breaks: np.ndarray
@@ -67,7 +65,7 @@ def integrate(
     ----------
     times : increasing, s; the blocks are at rest at the first.
     period : of the load (s), if it has one.
-    noise : random perturbation of every step, relative to its terms, to mimic round-off; the
+    noise : random perturbation of every step, relative to its terms, that mimics round-off; the
         motion has the floating-point type of `times`.
     """
     size = len(system.steady)
@@ -80,12 +78,12 @@ def integrate(
 
 
 class Motion:
-    """The motion of blocks from rest on, and of tension-free joints.
+    """The motion of blocks from rest, and of no-tension joints.
 
-    states : float array [n, m], of its `BlockSystem`. events : number of openings and closings.
-    steps : number of Taylor series. closed, changed : which joints are, and how often each has
-    changed at the current time. zero : [2, joints], whether the force of spring, or spring and
-    dashpot, is now zero.
+    states : float array [n, m], of the `BlockSystem`. events : number of openings and closings.
+    steps : number of Taylor series. closed, changed : whether each joint is closed, and how often
+    it has changed at the current time. zero : [2, joints], whether the force of the spring, or of
+    spring and dashpot, is zero now.
     """
 
     def __init__(self, system, load, times, period, noise, seed) -> None:
@@ -108,7 +106,7 @@ class Motion:
         self._release()
 
     def _release(self) -> None:
-        """Take the forces of open joints from the equations of motion."""
+        """Remove the forces of open joints from the equations of motion."""
         system, held = self.system, np.ones(len(self.system.initial))
         held[system.one_sided[~self.closed]] = 0.0
         self.pushed = csr_array(system.moves.multiply(held)) @ system.resists
@@ -128,7 +126,7 @@ class Motion:
             t = end if last and share == 1 else t + h * share
 
     def _step(self, t: float, h: float, end: float) -> float:
-        """Advance by one series, to its end or the first event; return the fraction of the step."""
+        """Advance by one series, to its end or the first event; return the completed fraction."""
         X = self._series(t, h)
         first, event = self._first_event(X)
         until = end if event is None else t + h * first
@@ -147,7 +145,8 @@ class Motion:
         return first
 
     def _series(self, t: float, h: float) -> np.ndarray:
-        """Return the state's series [ORDER + 1, m] in powers of the fraction of a step."""
+        """Return the Taylor coefficients [ORDER + 1, m] of the state over the fraction of a
+        step."""
         values = self.load.value(t + h * _NODES).astype(float)
         drive = np.linalg.solve(_POWERS, values.reshape(len(_NODES), -1))
         rates = np.zeros((ORDER, len(self.x)), dtype=self.x.dtype)
@@ -160,14 +159,15 @@ class Motion:
         return X
 
     def _rate(self, x: np.ndarray) -> np.ndarray:
-        """Return A x; of joints that can open by their strains, lest blocks that move together
-        strain them by round-off."""
+        """Return A x; with no-tension joints from their strains, so that round-off does not strain
+        blocks that move together."""
         if not len(self.closed):
             return self.matrix @ x
         return self.system.free @ x + self.pushed @ (self.system.strains @ x)
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
-        """Return the fraction of the step at the first change of a joint, that joint and force."""
+        """Return the fraction of the step at the first change of a joint, with the joint and
+        force."""
         system, count = self.system, len(self.system.initial)
         if not len(system.one_sided):
             return 1.0, None
@@ -176,7 +176,7 @@ class Motion:
         forces = np.array([springs.T, (resists @ strains).T])
         forces[:, 0] += self.at_rest
         forces[:, 0][self.zero] = 0.0
-        bounds = _BERNSTEIN @ forces  # [2, ORDER + 1, barred]
+        bounds = _BERNSTEIN @ forces  # [2, ORDER + 1, joints]
         stays = np.where(
             self.closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0)
         )
@@ -207,9 +207,8 @@ class Motion:
 def _change_of(
     forces: np.ndarray, crosses: np.ndarray, closed: bool, least: float, up_to: float
 ) -> tuple[float, int] | None:
-    """Return the first time before `up_to` at which a joint changes, and the force that causes it:
-    0 that of the spring, 1 that of spring and dashpot together. crosses : those that may be zero.
-    """
+    """Return the first time before `up_to` at which a joint changes, and the force that causes it
+    (0 spring, 1 spring and dashpot), or None. crosses : forces that may become zero."""
     found = [(r, int(kind)) for kind in np.flatnonzero(crosses) for r in _roots(forces[kind])]
     roots = [one for one in found if one[0] < up_to]
     edges = sorted([(0.0, -1), *roots])

@@ -1,9 +1,9 @@
-"""The row of rigid blocks that a pillar is, as the masses and contacts of `system`.
+"""The row of rigid blocks of a pillar, as the masses and contacts of `system`.
 
-Contact j, from the start's face (j = 0) over the joints to the end's (j = N), is between the bodies
-j - 1 and j. The ends have no contact (free), a dashpot Z A on the block (quiet, Guo & Li 2002,
-equation 9), a dashpot Z A on a face without mass behind half a block 2k (matched), or half a block
-of rock to a wall (fixed).
+Contact j lies between bodies j - 1 and j, from the start's face (j = 0) over the joints to the
+end's face (j = N). An end has no contact (free), a dashpot Z A on the block (quiet, Guo & Li 2002,
+equation 9), a dashpot Z A on a massless face behind half a block 2k (matched), or half a block of
+rock to a wall (fixed).
 """
 
 import numpy as np
@@ -52,9 +52,9 @@ def own_freedoms(scene: Scene) -> list[int]:
 
 def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
     """Return the masses of the blocks, the start's face and the end's face, [N + 2, freedoms], and
-    the contacts, those of the faces with the ground last; without slip, opening and softening.
+    the contacts, those of faces with the ground last; without slip, opening and softening.
 
-    held : as the row stands under gravity, its ends fixed where they bear it, else free.
+    held : the static state under gravity, with ends that bear the weight fixed and others free.
     """
     p, own = calibrate(scene), own_freedoms(scene)
     n, rocks, kinds = p.block_count, (p.at_start, p.at_end), [scene.ends.start, scene.ends.end]
@@ -89,7 +89,7 @@ def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
 
 
 def _end(kind: str, rock: JointedRock) -> tuple[np.ndarray, np.ndarray]:
-    """Return the springs and the dashpots of the contact at an end, normal and shear."""
+    """Return the springs and dashpots of the contact at an end, normal and shear."""
     if kind in ("free", "quiet"):
         Z = np.array([rock.impedance, rock.shear_impedance])
         return 0 * Z, Z * (kind == "quiet")
@@ -113,10 +113,10 @@ def drive_vector(scene: Scene) -> np.ndarray:
 
 
 def _at_start(scene: Scene, contacts: Contacts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the displacement of the blocks (m) and the forces of the contacts (N, N m) before the
-    load, at rest under static gravity, and the acceleration (m/s2) under sudden gravity.
+    """Return the blocks' displacement (m) and the contact forces (N, N m) before the load, at rest
+    under static gravity; and the acceleration (m/s2) under sudden gravity.
 
-    Quiet and matched ends that bear the weight exert what they would if they were fixed.
+    Quiet and matched ends that bear the weight exert the reaction of fixed ends.
     """
     own, gravity = own_freedoms(scene), scene.gravity
     mass, held = bodies(scene, held=True)

@@ -1,20 +1,20 @@
 """Rows of rigid blocks, exact in time: the equations of the rigid-block engine.
 
-A pillar's blocks (`pillar`) move in one dimension or, where they move across its axis or turn, in
-three.
+A pillar's blocks (`pillar`) move in one dimension, or in three if they move across its axis or
+rotate.
 
-Without dashpots and with free ends the axial modes are omega_n = 2 sqrt(k/m) sin(n pi / 2N) of
+Without dashpots and with free ends the axial modes are omega_n = 2 sqrt(k/m) sin(n pi / 2N) with
 shape cos(n pi (j - 1/2) / N), j = 1..N; Kelvin-Voigt dashpots are proportional and damp each mode
 at the rate eta omega_n^2 / 2 (Brillouin, Wave Propagation in Periodic Structures, 1946).
 
-Linear rows are solved by matrix exponentials (`linear`), chains whose joints carry no tension from
-event to event (`events`). The only error is round-off, bounded by the difference from a twin that
-is perturbed at every step. Rattling of blocks is chaotic: such a chain is unknown from the time on
-at which the two differ by PARTED of the motion (`known_until`).
+Linear rows are solved by matrix exponentials (`linear`), chains with no-tension joints from event
+to event (`events`). The only error is round-off, bounded by the difference from a twin that is
+perturbed at every step. Rattling of blocks is chaotic: such a chain is known only up to
+`known_until`, when the two differ by PARTED of the motion.
 
 Valid for loads of any direction, eccentricity or couple, shaken bases, soft layers, segments,
 dashpots, mass-proportional damping, any ends, gravity and prestress; no joint slips or softens, and
-joints without tension are those of a chain that pulls none of them at rest.
+no-tension joints belong to a chain and are not in tension at rest.
 """
 
 from typing import Any
@@ -58,7 +58,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def applies_without_tension(scene: Scene) -> Answer:
-    """Return whether the chain has a tension-free joint and is not too long."""
+    """Return whether the chain has a no-tension joint and is not too long."""
     carried = bool(calibrate(scene).tension.all()), "every joint carries tension: see lattice"
     answer = holds(scene, (*HELD, "no tension"), carried, _too_many(scene, 2000, EVENTS))
     if answer and (one := system_of(scene)).initial[one.one_sided].min() < 0:
@@ -86,8 +86,7 @@ def _too_many(scene: Scene, most: int, why: str) -> tuple[bool, str]:
 
 def solve(scene: Scene) -> xr.Dataset:
     """Return stress, velocity and displacement of the scene's row of blocks; in space also shear
-    and rotation. They are the response to the drive, that to sudden gravity, and the initial state.
-    """
+    and rotation: responses to drive and sudden gravity, plus the initial state."""
     one, times = system_of(scene), sample_times(scene)
     about: dict[str, Any] = {}
     name, known = (IN_SPACE if is_spatial(scene) else AXIAL).name, len(times)
@@ -109,7 +108,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
 def _known(one: BlockSystem, states: np.ndarray, other: np.ndarray) -> int:
     """Return the number of samples before two solutions [n, m] diverge."""
-    rate = one.matrix[0, len(one.rest)]  # of scaled displacements per velocity, rad/s
+    rate = one.matrix[0, len(one.rest)]  # rate of scaled displacement per scaled velocity, rad/s
 
     def size(x: np.ndarray) -> np.ndarray:
         strained = rate * np.diff(x @ one.displacement.T, axis=1)
@@ -122,8 +121,8 @@ def _known(one: BlockSystem, states: np.ndarray, other: np.ndarray) -> int:
 def contact_forces(
     one: BlockSystem, states: np.ndarray, drive: np.ndarray | float = 0.0
 ) -> np.ndarray:
-    """Return the forces of contacts [..., k] in states [..., m] under a drive [...], N and N m,
-    compression positive."""
+    """Return contact forces [..., k] in states [..., m] under a drive [...], N and N m, compression
+    positive."""
     strains, count, own = states @ one.strains.T, len(one.initial), one.one_sided
     forces = strains @ one.resists.T + np.multiply.outer(drive, one.direct) + one.initial
     springs = strains[..., :count] @ one.resists[own, :count].T + one.initial[own]
@@ -132,11 +131,11 @@ def contact_forces(
 
 
 def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
-    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] of a row in states
-    [n, m]; in space these along each axis [receivers, 3, n], shear and rotation (rad).
+    """Return stress (Pa), velocity (m/s) and displacement (m) [receivers, n] of a row in states [n,
+    m]; in space each along the axes [receivers, 3, n], with shear and rotation (rad).
 
     Stress is interpolated between the start, the contacts and the end; velocity and displacement
-    between the block centres, beyond which they are those of the end blocks.
+    between the block centres, and constant beyond the outermost.
     """
     (sections, points), c = reads(scene), len(own_freedoms(scene))
     forces = contact_forces(one, states, drive(scene).value(sample_times(scene)))
@@ -156,8 +155,8 @@ def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
 
 
 def reads(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the linear interpolations from the forces of contacts to tractions in sections [s,
-    N + 1], and from the motion of blocks to that of points [p, N]."""
+    """Return the interpolation matrices from contact forces to tractions in sections [s, N + 1],
+    and from block motion to motion of points [p, N]."""
     p, record = calibrate(scene), scene.record
     sections, points = (
         np.stack([np.interp(places, nodes, one) for one in np.eye(len(nodes))], axis=1)

@@ -1,12 +1,12 @@
-"""A rigid block that slides on a slope under its weight by Coulomb friction.
+"""A rigid block that slides on a slope under its weight with Coulomb friction.
 
-The second of two blocks is fixed, and gravity g presses the first onto it at the slope angle beta
-from the axis. The joint carries N = m g cos beta and in shear at most N tan phi, so
+The second of two blocks is fixed, and gravity g presses the first onto it, at the slope angle beta
+from the axis. The joint carries N = m g cos beta and in shear at most N tan phi, so that
 
-    v = max(0, g (sin beta - cos beta tan phi)) t   down the slope,
+    v = max(0, g (sin beta - cos beta tan phi)) t   down the slope;
 
-the shear force is m g sin beta where that is less. The initial settling of the blocks on springs
-and dashpots is neglected.
+the shear force is m g sin beta if that is less. The initial settling of the blocks on springs and
+dashpots is neglected.
 
 Valid for two blocks, a free start, a fixed end, no load, gravity that acts suddenly and compresses
 the joint, friction without cohesion, and blocks that do not topple.
@@ -80,7 +80,7 @@ def solve(scene: Scene) -> xr.Dataset:
 
 
 def _gravity(scene: Scene) -> tuple[np.ndarray, float]:
-    """Return gravity's components across the axis, [x, z], and along it, m/s2."""
+    """Return gravity across the axis, [x, z], and along it, m/s2."""
     assert scene.gravity is not None
     g = scene.gravity.acceleration * np.array(scene.gravity.direction)
     return g[[0, 2]], float(g[1])

@@ -1,25 +1,25 @@
-"""Rigid blocks of small motion and their linear contacts as first-order systems x' = A x + b f + g,
-in one, two or three dimensions d.
+"""Rigid blocks with small motion and linear contacts as first-order systems x' = A x + b f + g, in
+one, two or three dimensions d.
 
-A block has the motion (u, theta) of its centroid, d displacements and no, 1 or 3 rotations; a point
-at the arm a from it moves by u + theta x a. At its centroid, a contact of the bodies i and j has
-the relative motion r of j less that of i, and exerts the force and moment F on j. Springs K_n and
-K_s (Pa/m) on its area A, of second moments S, add up to its stiffness
+A block moves by (u, theta) of its centroid, with d displacements and 0, 1 or 3 rotations; a point
+at the arm a moves by u + theta x a. A contact of bodies i and j has at its centroid the relative
+motion r of j minus i, and exerts the force and moment F on j. Springs K_n and K_s (Pa/m) over its
+area A with second moments S give the stiffness
 
     D = [[A k, 0], [0, sum_ab S_ab E_a^T k E_b]],   k = K_s 1 + (K_n - K_s) n n^T,
 
-E_a theta = theta x e_a, and dashpots to its viscosity V likewise. With r = B X, X the motions of
-all bodies, and alpha of mass-proportional damping
+E_a theta = theta x e_a, and dashpots the viscosity V likewise. With r = B X, X the motion of all
+bodies, and mass-proportional damping alpha
 
     M u'' + alpha M u' = [B^T F]_u + M gravity,   F = -(D r + V r') + push f + initial
-    0 = [B^T F]_w                                 on a face without mass
+    0 = [B^T F]_w                                 on a massless face
 
-while a wall is at rest, or moves with the base. A joint of a chain that carries no tension exerts
-nothing while its spring, or spring and dashpot together, pull (Guo & Li 2002, equation 10).
+while a wall is at rest, or moves with the base. A no-tension joint of a chain exerts no force while
+its spring, or spring and dashpot together, are in tension (Guo & Li 2002, equation 10).
 
-States are relative to the initial one, weighted by the roots of masses, displacements also by the
-highest frequency of a long chain, so that the entries of A are of similar magnitude; by powers of
-two, so that blocks that move together strain nothing to the last bit.
+States are relative to the initial one and scaled by the square roots of masses, displacements also
+by the highest frequency of a long chain, so that the entries of A have similar size. Scales are
+powers of two, so that blocks that move together have exactly zero strain.
 """
 
 from math import sqrt
@@ -32,7 +32,7 @@ from jointwave.cases.geometry.blocks import Blocks, Facets
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.measure import along_and_across
 
-#: e_k x e_i as [i, :, k]: what a rotation about k moves at the end of an arm along i.
+#: e_k x e_i as [i, :, k]: displacement at the end of an arm along i by a rotation about k.
 TURN = np.cross(np.eye(3)[None], np.eye(3)[:, None]).swapaxes(1, 2)
 
 
@@ -62,10 +62,10 @@ def contacts_of(
     bending: np.ndarray | float = 1.0,
     shift: np.ndarray | float = 0.0,
 ) -> Contacts:
-    """Return pieces of the surfaces of blocks as contacts, those of the boundary with the ground.
+    """Return facets of blocks as contacts; those on the boundary are contacts with the ground.
 
-    springs, dashpots : of `Contacts`. bending : part of the second moments that the points
-    of each contact have [c]. shift : by which blocks j stand elsewhere, m [d].
+    springs, dashpots : see `Contacts`. bending : share of the second moments that the points of
+    each contact carry [c]. shift : offset of blocks j, m [d].
     """
     i, j = facets.blocks.T
     arms = [facets.centroid - blocks.centroid[i], facets.centroid - blocks.centroid[j] - shift]
@@ -75,20 +75,20 @@ def contacts_of(
 
 
 class BlockSystem(NamedTuple):
-    """The first-order form of blocks with n degrees of freedom in m states: their displacements,
-    their velocities, displacements of faces without mass, and that of the base.
+    """First-order form of blocks with n degrees of freedom in m states: displacements and
+    velocities of blocks, displacements of massless faces, and that of the base.
 
     mass : float array [n], kg or kg m2. stiffness : sparse [n, n], with all other bodies at rest.
     free : sparse [m, m] (1/s), A without the contacts.
-    load, steady : float arrays [m] or, of several loads, [loads, m], b; and [m], g.
+    load, steady : b, float array [m] or, for several loads, [loads, m]; and g [m].
     displacement, velocity : sparse [n, m], from the state to the blocks' motion; m, m/s (rad,
         rad/s). rest : float array [n], their displacement at the start.
     strains : sparse [2 k, m], relative displacements and velocities of the contacts.
     resists : sparse [k, 2 k], their forces on bodies j (N, N m) per strain.
-    direct, initial : float arrays [k], those of a unit drive and those at the start.
+    direct, initial : float arrays [k], contact forces by a unit drive and at the start.
     driven, moves : sparse [m, n] and [m, k], rate of the state per force on the blocks' freedoms
-        and per force of a contact.
-    one_sided : int array, the contacts of a chain that carry no tension.
+        and per contact force.
+    one_sided : int array, the no-tension contacts of a chain.
     """
 
     mass: np.ndarray
@@ -109,7 +109,7 @@ class BlockSystem(NamedTuple):
 
     @property
     def forces(self) -> csr_array:
-        """Forces of the contacts per state, sparse [k, m], N or N m."""
+        """Contact forces per state, sparse [k, m], N or N m."""
         return self.resists @ self.strains
 
     @property
@@ -119,7 +119,7 @@ class BlockSystem(NamedTuple):
 
 
 def carried(arm: np.ndarray, freedoms: int) -> np.ndarray:
-    """Return the matrices [p, f, f] from the motion of bodies to that at arms [p, d], m."""
+    """Return the matrices [p, f, f] from the motion of bodies to the motion at arms [p, d], m."""
     dim = arm.shape[1]
     found = np.tile(np.eye(freedoms), (len(arm), 1, 1))
     found[:, :dim, dim:] = np.einsum("pi,ijk->pjk", arm, _turn(dim, freedoms))
@@ -127,7 +127,7 @@ def carried(arm: np.ndarray, freedoms: int) -> np.ndarray:
 
 
 def relative(contacts: Contacts, bodies: int, freedoms: int) -> csr_array:
-    """Return B, the relative motions of contacts per motion of the bodies, sparse."""
+    """Return B, the contacts' relative motions per motion of the bodies, sparse."""
     i, j = (carried(contacts.arm[:, side], freedoms) for side in (0, 1))
     blocks = np.where(contacts.blocks == OUTSIDE, bodies, contacts.blocks)
     matrices = np.stack([-i, j], axis=1).reshape(-1, freedoms, freedoms)
@@ -137,7 +137,7 @@ def relative(contacts: Contacts, bodies: int, freedoms: int) -> csr_array:
 
 
 def resistance(contacts: Contacts, values: np.ndarray, freedoms: int) -> csr_array:
-    """Return D or V of contacts, sparse; values : as in `Contacts`, Pa/m or Pa s/m."""
+    """Return D or V of contacts, sparse; values : see `Contacts`, Pa/m or Pa s/m."""
     count, dim = contacts.normal.shape
     k = values if values.ndim == 3 else along_and_across(contacts.normal, values)
     each, turn = np.zeros((count, freedoms, freedoms)), _turn(dim, freedoms)
@@ -160,16 +160,16 @@ def first_order(
 
     Parameters
     ----------
-    mass : [bodies, f], of their freedoms, kg and kg m2; 0 of faces without mass, which touch blocks
-        and the ground by dashpots, and infinite of walls. Blocks come first.
-    push : forces that a unit drive exerts on the first contact [f], N and N m.
-    base : motion of the walls [bodies, f] where the drive is the velocity of the base.
+    mass : [bodies, f], per degree of freedom, kg and kg m2; 0 for massless faces, which touch
+        blocks and the ground by dashpots, and infinite for walls. Blocks come first.
+    push : forces of a unit drive on the first contact [f], N and N m.
+    base : motion of the walls [bodies, f] if the drive is the velocity of the base.
     alpha : of mass-proportional damping, 1/s.
-    start : the blocks' displacement [n] and the contacts' forces [k] at first, gravity's
-        acceleration [n] that is not in equilibrium with these.
-    one_sided : contacts that carry no tension.
-    axes : from the motion of bodies, rotations about their principal axes, to that about those of
-        the contacts, sparse; None: they are the same.
+    start : initial displacement of the blocks [n] and contact forces [k], and gravity's
+        acceleration [n] that these do not balance.
+    one_sided : no-tension contacts.
+    axes : sparse matrix from motion with rotations about principal axes to motion with rotations
+        about the contacts' axes; None if they are the same.
     """
     (bodies, c), own = mass.shape, mass.ravel()
     B = relative(contacts, bodies, c) if axes is None else relative(contacts, bodies, c) @ axes
@@ -193,7 +193,7 @@ def first_order(
     load[-1] = base is not None
     steady = np.concatenate([np.zeros(n), sinks, np.zeros(len(f) + 1)])
     K, roots = B[:, q].T @ D @ B[:, q], np.sqrt(masses)
-    rate = sqrt(2 * (K.diagonal() / masses).max()) or 1.0  # of twice k / m
+    rate = sqrt(2 * (K.diagonal() / masses).max()) or 1.0  # K.diagonal() = 2 k in a chain
     scale = np.concatenate([rate * roots, roots, rate * np.resize(roots[:c], len(f) + 1)])
     scale = np.exp2(np.round(np.log2(scale)))
     to, back = csr_array(diags(scale)), csr_array(diags(1 / scale))
@@ -217,5 +217,5 @@ def first_order(
 
 
 def _turn(dim: int, freedoms: int) -> np.ndarray:
-    """Return what rotations move at the end of arms, [d, d, rotations]."""
+    """Return the displacement at the ends of arms by rotations, [d, d, rotations]."""
     return TURN[:dim, :dim, 3 - (freedoms - dim) :]

@@ -1,17 +1,17 @@
 """One joint that stiffens as it closes, between two half-spaces of rock, at normal incidence.
 
-The joint closes by e(s) under the normal stress s = sigma_T + prestress; with the impedance Z of
-the rock and the incident stress sigma_I (Zhao & Cai, Rock Mech. Rock Eng. 34, 2001)
+The joint closes by e(s) under the normal stress s = sigma_T + prestress; with the rock's impedance
+Z and the incident stress sigma_I (Zhao & Cai, Rock Mech. Rock Eng. 34, 2001)
 
     (Z / 2) e'(s) sigma_T' = sigma_I - sigma_T,   sigma_R = sigma_T - sigma_I
 
-with the hyperbola of Bandis et al. (1983) e' = 1 / (k_ni (1 + s / (k_ni d_m))^2), and 1 / k_ni
-where s is tensile, each minus the compliance that the rock has without this joint. The transmitted
-stress is integrated by Runge-Kutta of order 8 (Dormand & Prince) from break to break of the load:
-errors decay, and a run with a thousand times the tolerance shows their size.
+with the hyperbola of Bandis et al. (1983) e' = 1 / (k_ni (1 + s / (k_ni d_m))^2), or 1 / k_ni in
+tension, minus the compliance of the rock without this joint. The transmitted stress is integrated
+by Runge-Kutta of order 8 (Dormand & Prince) between the breaks of the load: errors decay, and a run
+with a thousand times the tolerance shows their size.
 
-Valid for one such joint in the homogenised bar, as `one_joint`, without dashpots, or as the only
-joint in intact rock crossed by a P wave along a periodic strip.
+Valid for one such joint without dashpots, in the homogenised bar, like `one_joint`, or as the only
+joint in intact rock under a P wave along a periodic strip.
 """
 
 from dataclasses import dataclass
@@ -32,13 +32,13 @@ from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
-TOLERANCES = (1e-12, 1e-9)  # of the solution and its twin, relative to the largest stress
+TOLERANCES = (1e-12, 1e-9)  # for the solution and its twin, relative to the largest stress
 
 
 @dataclass(frozen=True)
 class ClosingJoint:
-    """A joint: y, m; k_ni, Pa/m; d_m, m, inf if linear; the compliance of the rock without it,
-    m/Pa; prestress, Pa."""
+    """A joint: y, m; k_ni, Pa/m; d_m, m, inf if linear; compliance of the rock without it, m/Pa;
+    prestress, Pa."""
 
     y: float
     stiffness: float
@@ -62,7 +62,7 @@ class ClosingJoint:
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether the waves meet only one joint that stiffens within the duration."""
+    """Return whether the waves meet exactly one joint that stiffens within the duration."""
     p = calibrate(scene)
     stiffens = np.zeros(len(p.stiffness), dtype=bool)
     if p.maximum_closure is not None:
@@ -84,7 +84,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def solve(scene: Scene) -> xr.Dataset:
-    """Return stress, velocity and displacement on both sides of the joint that stiffens."""
+    """Return stress, velocity and displacement on both sides of the stiffening joint."""
     p, load, times = calibrate(scene), entering(scene), sample_times(scene)
     joint = the_joint(scene, p)
     passed = (Passed(joint, p.impedance, load, times[-1], each) for each in TOLERANCES)
@@ -106,9 +106,9 @@ def the_joint(scene: Scene, p: Properties) -> ClosingJoint:
 
 
 class Passed:
-    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
+    """sigma_T (Pa) and its impulse (Pa s) at any time up to `end` (s), under the incident `load`.
 
-    impedance : Z, Pa s/m. tolerance : of each step, of the largest incident stress.
+    impedance : Z, Pa s/m. tolerance : of each step, relative to the largest incident stress.
     """
 
     def __init__(
@@ -136,7 +136,7 @@ class Passed:
         return stress, self._rate(t, stress)
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return both at times (s)."""
+        """Return sigma_T (Pa) and its impulse (Pa s) at times (s)."""
         stress, joint = self.stress(times)[0], self.joint
         moved = joint.closure(joint.prestress + stress) - joint.closure(np.array(joint.prestress))
         return stress, self.load.impulse(times) - self.impedance * moved / 2

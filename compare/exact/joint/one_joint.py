@@ -1,16 +1,15 @@
 """One linear joint between two half-spaces of rock of impedance Z.
 
-Harmonic, kappa = K/(Z omega): |T| = 2 kappa/sqrt(4 kappa^2 + 1), |R| = 1/sqrt(4 kappa^2 + 1); a
-dashpot c_j takes K to K + i omega c_j (Schoenberg, JASA 68, 1980; Pyrak-Nolte, Myer & Cook, JGR
-95, 1990). In time (Z/2K) sigma_T' + sigma_T = sigma_I, sigma_R = sigma_T - sigma_I. A dashpot of
-time constant eta passes the share eta/tau without delay, smoothing the rest with tau = eta + Z/2K:
+Harmonic waves, kappa = K/(Z omega): |T| = 2 kappa/sqrt(4 kappa^2 + 1), |R| = 1/sqrt(4 kappa^2 + 1);
+with a dashpot c_j, K becomes K + i omega c_j (Schoenberg, JASA 68, 1980; Pyrak-Nolte, Myer & Cook,
+JGR 95, 1990). In time (Z/2K) sigma_T' + sigma_T = sigma_I, sigma_R = sigma_T - sigma_I. A dashpot
+of time constant eta passes the share eta/tau without delay and smooths the rest, tau = eta + Z/2K:
 
     sigma_T = (eta/tau) sigma_I + (1 - eta/tau) s,   tau s' + s = sigma_I
 
-Valid for the homogenised bar without rock damping, one soft layer, a quiet or matched far end; with
-a quiet or matched start at all times, with a free one until a wave reflected by the layer has been
-reflected again at the start and reached a receiver. On the layer itself velocity is the mean of
-both sides.
+Valid for the homogenised bar without rock damping, with one soft layer and a quiet or matched far
+end; with a free start only until the layer's reflection has been reflected there and has reached a
+receiver. On the layer, velocity is the mean of both sides.
 """
 
 from collections.abc import Callable
@@ -32,7 +31,7 @@ from jointwave.results.dataset import dataset
 
 Passes = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 HELD = ("prestress", "damped joints", "soft layers", "stiff layers")
-NEAR = 1e-9  # m: nearer places are on the joint
+NEAR = 1e-9  # m, distance below which a place is on the joint
 
 
 class Joint(NamedTuple):
@@ -44,7 +43,7 @@ class Joint(NamedTuple):
 
 
 def applies(scene: Scene) -> Answer:
-    """Return whether the waves meet only one joint within the scene's duration."""
+    """Return whether the waves meet exactly one joint within the scene's duration."""
     p = calibrate(scene)
     compliance = p.excess_compliance
     answer = holds(
@@ -59,7 +58,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def back_in_time(scene: Scene, joint_y: float, speed: float) -> Answer:
-    """Return whether no reflection of a joint at y (m) reaches a receiver from a free start."""
+    """Return whether no reflection from a joint at y (m) returns from a free start in time."""
     nearest = min([*scene.record.stress, *scene.record.velocity])
     back = (2 * joint_y + nearest) / speed
     if scene.ends.start != "free" or back >= scene.time.duration:
@@ -78,8 +77,8 @@ def solve(scene: Scene) -> xr.Dataset:
 def behind_and_before(
     scene: Scene, name: str, joint_y: float, passed: Passes, twin: Passes
 ) -> xr.Dataset:
-    """Return the result of a solver for a joint at y (m) with the transmission `passed` (`around`);
-    twin : a second computation of it whose difference bounds the error."""
+    """Return a solver's result for a joint at y (m) with the transmission `passed` (see `around`);
+    twin : a second computation, whose difference bounds the error."""
     p, load, times = calibrate(scene), entering(scene), sample_times(scene)
     found = []
     for one in (passed, twin):
@@ -102,11 +101,11 @@ def around(
     times: np.ndarray,
     places: list[float] | np.ndarray,
 ) -> np.ndarray:
-    """Return the waves around a joint between half-spaces, in front of it, on it and behind it.
+    """Return the waves in front of, on and behind a joint between half-spaces, [there and back,
+    stress and impulse, place, time].
 
-    passed : sigma_T (Pa) and its impulse (Pa s) at times at the joint (s), each row of them equally
-        spaced, under the incident stress `load`; joint_y, places in m, speed in m/s.
-    The result is [there and back, stress and impulse, place, time].
+    passed : sigma_T (Pa) and its impulse (Pa s) at times at the joint (s), in equally spaced rows,
+    under the incident stress `load`; joint_y, places in m, speed in m/s.
     """
     y = np.asarray(places, dtype=float)[:, None]
     behind, on = y > joint_y + NEAR, np.abs(y - joint_y) <= NEAR
@@ -128,8 +127,8 @@ def transmitted(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
 
-    times : [n], or rows of them, equally spaced from before the load begins. which : 1 for the twin
-    (`linear.twins`).
+    times : [n], or rows of times, equally spaced from before the load begins. which : 1 for the
+    twin (`linear.twins`).
     """
     tau = joint.time_constant + impedance / (2 * joint.stiffness)
     share = joint.time_constant / tau

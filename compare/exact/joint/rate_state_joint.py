@@ -1,19 +1,19 @@
 """A plane shear wave at a joint under rate-and-state friction, by Runge-Kutta of order 8.
 
-Under the pressure n the joint carries s while its faces slide at V in the state theta (Dieterich
+Under the pressure n, the joint carries s while its faces slide at V in the state theta (Dieterich
 1979; Ruina 1983; Rice & Ben-Zion 1996):
 
     V = 2 V_0 sinh(s / (a n)) e^(-psi / a),   psi = mu_0 + b ln(V_0 theta / D_c),
     theta' = 1 - |V| theta / D_c.
 
-Between half-spaces of impedance Z under the incident stress sigma_I, with the compliance 1/K that
-the joint adds to the rock,
+Between half-spaces of impedance Z under the incident stress sigma_I, with the joint's additional
+compliance 1/K,
 
     (Z / 2) (s' / K + V) = sigma_I - s.
 
-Where 1/K = 0 that is an equation for s at every time, monotone and convex for s > 0, solved by
-Newton's method from above. The slip u = s / K + S, S' = V, gives the transmitted impulse: that of
-sigma_I minus Z u / 2.
+For 1/K = 0 this is an algebraic equation for s, monotone and convex for s > 0, solved by Newton's
+method from above. The slip u = s / K + S, S' = V, gives the transmitted impulse: that of sigma_I
+minus Z u / 2.
 """
 
 from math import asinh, copysign, exp, log
@@ -24,10 +24,10 @@ import numpy as np
 from jointwave.cases.histories import LoadHistory
 from jointwave.compare.exact.joint.trajectory import SHORTEST, Trajectory, edges_of, peak_of
 
-SPANS = 500  # of the whole time: no step is longer than one
-TOLERANCES = 1e-11, 1e-9  # of the integration, and of its twin
-LARGE = 300.0  # ln of a rate, or over 1 s of an age, that occurs only in too long a step
-MOST, SETTLED = 100, 1e-15  # corrections of Newton's method, and the last one, relative
+SPANS = 500  # least number of steps over the whole time
+TOLERANCES = 1e-11, 1e-9  # for the integration and its twin
+LARGE = 300.0  # bound on ln of a rate or age, exceeded only in trial steps that are too long
+MOST, SETTLED = 100, 1e-15  # Newton's method: most corrections, relative size of the last one
 
 
 class RateJoint(NamedTuple):
@@ -44,12 +44,12 @@ class RateJoint(NamedTuple):
     compliance: float = 0.0
 
     def offset(self, log_state: float) -> float:
-        """Return ln V_0 - psi / a at ln theta."""
+        """Return ln V_0 - psi / a for ln theta."""
         aged = log(self.rate / self.distance) + log_state
         return log(self.rate) - (self.friction + self.evolution * aged) / self.direct
 
     def slides(self, stress: float, log_state: float) -> float:
-        """Return V (m/s) at s (Pa) and ln theta."""
+        """Return V (m/s) for s (Pa) and ln theta."""
         x, offset = stress / (self.direct * self.pressure), self.offset(log_state)
         return _exp(offset + x) - _exp(offset - x)
 
@@ -71,15 +71,15 @@ class RateJoint(NamedTuple):
 
 
 def _exp(x: float) -> float:
-    """Return e^x, of a finite number."""
+    """Return e^x, bounded so as to stay finite."""
     return exp(min(x, LARGE))
 
 
 class RateStateWave:
-    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
+    """sigma_T (Pa) and its impulse (Pa s) at any time up to `end` (s), under the incident `load`.
 
-    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. rest : time of
-    stationary contact before t = 0, s.
+    impedance : Z, Pa s/m. tolerance : of each integration step, relative. rest : time of stationary
+    contact before t = 0, s.
     """
 
     def __init__(
@@ -105,13 +105,13 @@ class RateStateWave:
         _, log_state, stress = now.tolist()
         if joint.compliance == 0:
             stress = joint.carries(incident, log_state, self.impedance)
-        slides = joint.slides(stress, log_state)  # not what is left of sigma_I: that would cancel
+        slides = joint.slides(stress, log_state)  # sigma_I - s would suffer from cancellation
         if joint.compliance:
             loads = (2 * (incident - stress) / self.impedance - slides) / joint.compliance
         return [slides, _exp(-log_state) - abs(slides) / joint.distance, loads]
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return both at times (s)."""
+        """Return sigma_T (Pa) and its impulse (Pa s) at times (s)."""
         joint, (slide, log_state, stress) = self.joint, self.state(times)
         if joint.compliance == 0:
             both = zip(self.load.value(times).flat, log_state.flat, strict=True)

@@ -1,14 +1,14 @@
 """One joint that slips between two half-spaces of rock, under a plane shear wave.
 
 The joint carries the shear stress s up to its strength tau. With the incident stress sigma_I, the
-shear impedance Z and the compliance 1/K that the joint adds to the rock
+shear impedance Z and the joint's additional compliance 1/K
 
     (Z / 2K) s' = sigma_I - s while |s| < tau or |s| is about to fall,   s' = 0 while it slips;
     sigma_T = s,   sigma_R = s - sigma_I,   slip rate 2 (sigma_I - s) / Z
 
 and a joint as stiff as the others is rigid before it slips: s = sigma_I, clipped at +-tau (Miller,
-Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). `slip_phases` integrates this, of a joint
-that slip weakens or lifts too; where friction depends on the rate of slip, `rate_state_joint` does.
+Bull. Seism. Soc. Am. 68, 1978, for the harmonic wave). `slip_phases` integrates this, also for
+joints with slip weakening or dilation; `rate_state_joint` does for rate-dependent friction.
 
 Valid for blocks that do not rotate, a load across the axis, absorbing ends, one joint with cohesion
 or with friction under the prestress, and all else elastic and undamped.
@@ -36,7 +36,7 @@ from jointwave.results.dataset import dataset
 WORN = ("weakening", "dilation", "rate and state")
 RATED = next(part.without for part in PARTS if part.name == WORN[-1])
 HELD = ("spatial motion", "prestress", "fixed start", *WORN, *LAYERS)
-ROUND_OFF = 1e-11  # of the largest waveform: the roots' tolerance
+ROUND_OFF = 1e-11  # tolerance of roots, over the largest waveform
 
 
 def applies(scene: Scene) -> Answer:
@@ -70,7 +70,7 @@ def applies(scene: Scene) -> Answer:
 
 
 def solve(scene: Scene) -> xr.Dataset:
-    """Return shear, velocity and displacement on both sides of the joint that slips."""
+    """Return shear, velocity and displacement on both sides of the slipping joint."""
     times = sample_times(scene)
     found, twin = (_waveforms(scene, which) for which in (0, 1))
     errors = {
@@ -85,8 +85,8 @@ def solve(scene: Scene) -> xr.Dataset:
 
 
 def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
-    """Return the waveforms [receiver, axis, n], of a joint that slip changes also those of stress
-    [receiver, n]; which : 1 for the twin, whose tolerances are larger."""
+    """Return waveforms [receiver, axis, n], for a dilating or weakening joint also stress
+    [receiver, n]; which : 1 for the twin with larger tolerances."""
     p, load, times, record = calibrate(scene), entering(scene), sample_times(scene), scene.record
     joint, Z, axis = the_joint(scene, p), p.shear_impedance, np.array(scene.load.direction)[:, None]
     passed: rate_state_joint.RateStateWave | Passed
@@ -105,7 +105,7 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
     moved = (sheared[0] - sheared[1])[:, :, None] / Z * axis
     found = {"shear": (there + back)[:, None] * axis[[0, 2]]}
     if isinstance(passed, Passed) and (joint.dilation or isfinite(joint.distance)):
-        # The pressure waves along the axis that the joint radiates to both sides as it dilates.
+        # P waves along the axis, which a dilating joint radiates to both sides.
         off, of_stress = (np.array(y)[:, None] - joint.y for y in (record.velocity, record.stress))
         at = times - joint.y / p.shear_speed
         sent = np.array(passed.pressure(at - np.abs(off) / p.bar_speed))
@@ -115,7 +115,7 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
 
 
 def the_joint(scene: Scene, p: Properties) -> SlipJoint:
-    """Return the only joint that can slip; its strength is Mohr-Coulomb's under the prestress."""
+    """Return the only joint that can slip, with its Mohr-Coulomb strength under the prestress."""
     j, normal = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
 
     def own(every: np.ndarray | None, without: float) -> float:

@@ -1,24 +1,24 @@
 """A plane shear wave at a joint that slips, by Runge-Kutta of order 8 from phase to phase.
 
-With the slip path S and the strength tau(S), which falls by h per path or is constant, the joint
-carries s:
+With the slip path S and the strength tau(S), which falls by h per unit of path or is constant, the
+joint carries s:
 
     sticking: (Z / 2K) s' = sigma_I - s;   sliding along s: s = +-tau(S),
-    (Z / 2) (1 - h / K) S' = |sigma_I| - tau(S),
+    (Z / 2) (1 - h / K) S' = |sigma_I| - tau(S).
 
-each phase starting where the previous one ends: at |s| = tau(S), at S' = 0, at the end of the
-weakening. Where 1/K = 0, s = sigma_I while it sticks. The slip u = s / K +- S gives the transmitted
-impulse: that of sigma_I minus Z u / 2.
+A phase ends at |s| = tau(S), at S' = 0, or at the end of weakening. For 1/K = 0, s = sigma_I while
+the joint sticks. The slip u = s / K +- S gives the transmitted impulse: that of sigma_I minus Z u /
+2.
 
-Under a shear stress s_0 from the start, sigma_I + s_0 stands for sigma_I, and s contains s_0. A P
-wave that presses the joint by p(t) adds mu(S) p to tau; while it slides
+With an initial shear stress s_0, sigma_I + s_0 replaces sigma_I, and s includes s_0. A P wave that
+adds the pressure p(t) raises tau by mu(S) p; while the joint slides
 
     (Z / 2) ((1 - h / K) S' + mu p' / K) = |sigma_I + s_0| - tau.
 
-A joint that loses cohesion as it first slips keeps u: its path begins with what it unloads.
+A joint that loses cohesion at its first slip keeps u: its path starts with the unloading.
 
-A joint with 1/K = 0 that dilates by w(S) radiates a wave of pressure p = (Z_n / 2) w'(S) S' to
-both sides, Z_n along the normal, and its strength rises by mu(S) p:
+A joint with 1/K = 0 that dilates by w(S) radiates a P wave of pressure p = (Z_n / 2) w'(S) S' to
+both sides, with the normal impedance Z_n, and its strength rises by mu(S) p:
 
     (Z / 2 + mu w' Z_n / 2) S' = |sigma_I| - tau(S);   the impulse of p is Z_n w / 2.
 """
@@ -33,24 +33,24 @@ import numpy as np
 from jointwave.cases.histories import LoadHistory
 from jointwave.compare.exact.joint.trajectory import SHORTEST, edges_of, peak_of
 
-TOLERANCES = 3e-14, 1e-11  # of the integration, and of its twin
-#: Of the whole time, in each of which at most one phase ends. A prime: solve_ivp fails where a
-#: phase ends with a step.
+TOLERANCES = 3e-14, 1e-11  # for the integration and its twin
+#: Parts of the whole time in which at most one phase ends; prime, since solve_ivp fails if a phase
+#: ends exactly with a step.
 SPANS = 1999
-NEAR = 1e-12  # of the weakening distance: less of it is none
+NEAR = 1e-12  # remainder of the weakening distance that is neglected, relative
 TINY = 1e-300  # m, the path of a joint that has just slipped
-#: Of the peak: by how much s may miss the strength where it starts to slip, and exceed it where it
-#: sticks, so that a phase that begins at the strength does not end there.
+#: Relative to the peak: by how much s may fall short of the strength when slip starts, and exceed
+#: it while sticking, so that a phase that begins at the strength does not end there.
 SHORT, BEYOND = 1e-11, 1e-14
 
 
 class SlipJoint(NamedTuple):
-    """A joint: y (m), its additional compliance 1/K (m/Pa), its strength tau (Pa), and the slip
-    path (m) over which it falls to the dynamic one (Pa).
+    """A joint: y (m), additional compliance 1/K (m/Pa), strength tau (Pa), dynamic strength (Pa)
+    and the slip path (m) over which it is reached.
 
     friction, dynamic_friction : tan(phi) of both. dilation, dilation_distance : initial tan(psi),
-    and the slip path (m) over which it falls to 0. carried : s_0, Pa. lost : cohesion that is gone
-    once it has slipped, Pa.
+    and the slip path (m) over which it falls to 0. carried : s_0, Pa. lost : cohesion lost at the
+    first slip, Pa.
     """
 
     y: float
@@ -95,8 +95,8 @@ class SlipJoint(NamedTuple):
 
 
 class Phase(NamedTuple):
-    """start, end : s. way : +-1 where it slides, 0 where it sticks. path, slide : S and the signed
-    slip at its start, m. state : function of time to s (Pa) or S (m); None where s = sigma_I."""
+    """start, end : s. way : +-1 sliding, 0 sticking. path, slide : S and the signed slip at its
+    start, m. state : s (Pa) or S (m) as a function of time; None if s = sigma_I."""
 
     start: float
     end: float
@@ -107,18 +107,18 @@ class Phase(NamedTuple):
 
 
 class Pressed(NamedTuple):
-    """What a P wave adds to the pressure on a joint: `of` gives p (Pa) and p' (Pa/s) at times (s);
-    breaks : of p, s."""
+    """Pressure that a P wave adds on a joint: `of` gives p (Pa) and p' (Pa/s) at times (s); breaks
+    : of p, s."""
 
     of: Callable[[Any], tuple[Any, Any]] = lambda t: (0.0, 0.0)
     breaks: Sequence[float] = ()
 
 
 class Passed:
-    """sigma_T (Pa) and its impulse (Pa s) at any times up to `end` (s), under the incident `load`.
+    """sigma_T (Pa) and its impulse (Pa s) at any time up to `end` (s), under the incident `load`.
 
-    impedance : Z, Pa s/m. tolerance : of each step of the integration, relative. normal_impedance :
-    Z_n, Pa s/m, of a joint that dilates. pressed : by a P wave.
+    impedance : Z, Pa s/m. tolerance : of each integration step, relative. normal_impedance : Z_n,
+    Pa s/m, for a joint that dilates. pressed : by a P wave.
     """
 
     def __init__(
@@ -143,22 +143,22 @@ class Passed:
                 start = self._next(start, stop)
 
     def __call__(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return both at times (s)."""
+        """Return sigma_T (Pa) and its impulse (Pa s) at times (s)."""
         stress, slide, _, _ = self._at(times)
         stress = stress - self.joint.carried
         slip = self.joint.compliance * stress + slide
         return stress, self.load.impulse(times) - self.impedance * slip / 2
 
     def pressure(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return p of the joint's own dilation (Pa) and its impulse (Pa s) at times (s)."""
+        """Return the pressure p of dilation (Pa) and its impulse (Pa s) at times (s)."""
         _, _, path, pressure = self._at(times)
         return pressure, self.normal_impedance * self.joint.lift(path) / 2
 
     def _at(self, times: np.ndarray) -> np.ndarray:
-        """Return s, the signed slip, S and the dilation's p at times [4, n]."""
+        """Return s, the signed slip, S and the pressure p of dilation at times [4, n]."""
         found = np.zeros((4, *np.shape(times)))
         found[0] = self.joint.carried
-        # Each up to the next one, though it may end somewhat before.
+        # Each phase extends to the start of the next, though it may end slightly before.
         ends = [*(phase.start for phase in self.phases[1:]), inf]
         for phase, end in zip(self.phases, ends, strict=True):
             own = (times > phase.start) & (times <= end)
@@ -167,7 +167,7 @@ class Passed:
         return found
 
     def _within(self, phase: Phase, t: np.ndarray) -> np.ndarray:
-        """Return s, the signed slip, S and the dilation's p at times of a phase [4, n]."""
+        """Return s, signed slip, S and the pressure p of dilation at times of a phase [4, n]."""
         none = np.zeros(np.shape(t))
         if not phase.way:
             stress = self._incident(t) if phase.state is None else phase.state(t)[0]
@@ -185,16 +185,16 @@ class Passed:
         return self.load.value(np.asarray(t)) + self.joint.carried
 
     def _strength(self, t: Any, path: Any) -> Any:
-        """Return tau (Pa) at times (s) after slip paths (m), without what dilation adds."""
+        """Return tau (Pa) at times (s) after slip paths (m), without the effect of dilation."""
         return self.joint.left(path) + self.joint.friction_at(path) * self.pressed(t)[0]
 
     def _share(self, pressed: Any, weakens: bool) -> Any:
-        """Return 1 - h / K under p (Pa)."""
+        """Return 1 - h / K under the pressure p (Pa)."""
         fall = self.joint.fall + self.joint.friction_fall * pressed
         return 1 - self.joint.compliance * fall if weakens else 1.0
 
     def _rate(self, t: Any, way: int, path: Any, weakens: bool) -> Any:
-        """Return S' at times (s) while it slides."""
+        """Return S' at times (s) while the joint slides."""
         joint, (pressed, rises) = self.joint, self.pressed(t)
         friction = joint.friction_at(path)
         resistance = self.impedance * self._share(pressed, weakens)
@@ -204,7 +204,7 @@ class Passed:
         return (over - self.impedance * joint.compliance * friction * rises) / resistance
 
     def _weakens(self, path: float) -> bool:
-        """Return whether more slip than this path (m) takes strength away."""
+        """Return whether slip beyond this path (m) reduces the strength."""
         return bool(self.joint.fall) and path < self.joint.distance * (1 - NEAR)
 
     def _next(self, start: float, stop: float) -> float:
@@ -223,7 +223,7 @@ class Passed:
             phase = self._slide(start, stop, way, path, slide)
         else:
             phase = self._stick(start, stop, stress, path, slide)
-        if phase.end <= start:  # rounding: the previous phase goes on
+        if phase.end <= start:  # rounding: the previous phase continues
             return start + SHORTEST
         self.phases.append(phase)
         return phase.end
@@ -275,13 +275,13 @@ class Passed:
     def _solved(
         self, rate: Any, start: float, stop: float, now: float, scale: float, ends: dict[Any, int]
     ) -> Any:
-        """Return the solution from `now` on, up to where one of `ends` is 0 as it falls (-1) or
-        rises (1)."""
+        """Return the solution from `now` until one of `ends` crosses 0, falling (-1) or rising
+        (1)."""
         from scipy.integrate import solve_ivp
 
         for event, direction in ends.items():
             event.terminal, event.direction = True, direction
-        with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
+        with np.errstate(over="ignore", invalid="ignore"):  # in trial steps that are too long
             return solve_ivp(
                 rate, (start, stop), np.array([now]), "DOP853", events=[*ends], dense_output=True,
                 max_step=self.span, rtol=self.tolerance, atol=self.tolerance * scale,

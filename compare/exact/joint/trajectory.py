@@ -1,4 +1,4 @@
-"""Runge-Kutta of order 8 (Dormand & Prince) from break to break of a load."""
+"""Integration by Runge-Kutta of order 8 (Dormand & Prince) between the breaks of a load."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -8,8 +8,8 @@ import numpy as np
 
 from jointwave.cases.histories import LoadHistory
 
-SAMPLES = 2001  # of a load to find its peak
-SHORTEST = 1e-12  # s, of an integration
+SAMPLES = 2001  # of a load, to find its peak
+SHORTEST = 1e-12  # s, shortest interval of integration
 
 
 def edges_of(load: LoadHistory, end: float) -> list[float]:
@@ -18,15 +18,15 @@ def edges_of(load: LoadHistory, end: float) -> list[float]:
 
 
 def peak_of(load: LoadHistory, end: float) -> float:
-    """Return the largest modulus of a load up to `end` (s)."""
+    """Return the largest magnitude of a load up to `end` (s)."""
     times = np.linspace(load.breaks[0], max(end, load.breaks[0] + SHORTEST), SAMPLES)
     return float(np.abs(load.value(times)).max())
 
 
 class Trajectory:
-    """The solution of x' = rate(t, x) at any times, from the state `start` [m] at the first edge.
+    """The solution of x' = rate(t, x) at any time, from the state `start` [m] at the first edge.
 
-    tolerance : of each step, relative. scale : float array [m] or float, size of the state.
+    tolerance : of each step, relative. scale : size of the state, float array [m] or float.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Trajectory:
         self.start, self._parts = np.array(start), []
         now, steps = self.start, {"max_step": longest, "rtol": tolerance}
         for part in pairwise(edges):
-            with np.errstate(over="ignore", invalid="ignore"):  # of trial steps that are too long
+            with np.errstate(over="ignore", invalid="ignore"):  # in trial steps that are too long
                 found = solve_ivp(
                     rate, part, now, "DOP853", dense_output=True, atol=tolerance * scale, **steps
                 )

@@ -1,1 +1,1 @@
-"""Jointed rock masses in plane strain: pure functions of arrays, stress tension positive."""
+"""Jointed rock masses with plane waves, as pure functions of arrays; stress tension positive."""

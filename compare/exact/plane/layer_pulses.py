@@ -1,11 +1,11 @@
-"""A plane pulse among parallel joints, at many places together.
+"""A plane pulse in parallel joints, at many places at once.
 
 Each layer contains plane waves to and fro (`parallel_joints`). A travelling wave is the same pulse
-everywhere in the layer, only delayed, so its amplitude is inverted once and read at each place by
-Lagrange's polynomial through 2 HALF samples. An evanescent one decays with the depth d as
-e^{i omega q d}: it is inverted at the depths of the places or, if there are many, at Chebyshev
-points, between which it is interpolated in d (Trefethen, Approximation Theory and Approximation
-Practice, 2013). The part that follows a pulse without delay is summed in time, with all its kinks.
+throughout the layer, only delayed: its amplitude is inverted once and read at each place by a
+Lagrange polynomial through 2 HALF samples. An evanescent wave decays with the depth d as e^{i omega
+q d}: it is inverted at the depths of the places or, if there are many, at Chebyshev points, between
+which it is interpolated in d (Trefethen, Approximation Theory and Approximation Practice, 2013).
+The part that follows a pulse without delay is summed in time, with all its kinks.
 """
 
 from collections.abc import Callable, Iterator
@@ -21,25 +21,25 @@ from jointwave.compare.exact.plane.parallel_joints import PulseStack
 
 #: Particle velocity (m/s) as a function of times (s), along the polarisation of the wave.
 Pulse = Callable[[np.ndarray], np.ndarray]
-HALF = 4  # samples on either side
-NODES = range(-HALF + 1, HALF + 1)  # the samples, from the one before a time on
-MOST_NODES = 40  # depths of an evanescent wave in a layer, SPARE more than its decay requires
+HALF = 4  # samples on each side of a time that is interpolated
+NODES = range(-HALF + 1, HALF + 1)  # these samples, relative to the one before the time
+MOST_NODES = 40  # depths of an evanescent wave in a layer, including SPARE ones
 SPARE = 8
-NEGLIGIBLE = 1e-10  # of an evanescent wave
-FAINT = 1e-8  # of a pulse's spectrum
+NEGLIGIBLE = 1e-10  # error of an evanescent wave, relative
+FAINT = 1e-8  # part of a pulse's spectrum that is neglected
 AT_ONCE = 200  # amplitudes inverted together
 SAFETY = 3.0  # factor on the difference of the two inversions
-FLOOR = 2e-10  # of the largest motion
-TOGETHER = 32  # places at which an evanescent wave is found together
+FLOOR = 2e-10  # round-off, over the largest motion
+TOGETHER = 32  # places at which an evanescent wave is interpolated together
 
 
 @dataclass(frozen=True)
 class LayerWave:
     """One wave of one layer at the places where it is evaluated.
 
-    layer : counted along n. wave : of P+, SV+, P-, SV- or of SH+, SH-. members : the places [k].
-    delays : of the pulse at them [k], s. depths : those at which an evanescent wave is inverted
-    [d], m, with their weights `shares` [k, d] at the places; None for a travelling wave.
+    layer : counted along n. wave : index among P+, SV+, P-, SV- or SH+, SH-. members : the places
+    [k]. delays : of the pulse there [k], s. depths : at which an evanescent wave is inverted [d],
+    m; shares : their weights [k, d] at the places; both None for a travelling wave.
     """
 
     layer: int
@@ -62,10 +62,7 @@ class Fields(NamedTuple):
 
 def fields(pulse: Pulse, stack: PulseStack, points: np.ndarray, times: np.ndarray) -> Fields:
     """Return particle velocity and stress in front of, between and behind joints, with bounds from
-    the difference of two inversions, and from round-off.
-
-    pulse, points, times : as `motion` has them.
-    """
+    the difference of two inversions and from round-off. pulse, points, times : see `motion`."""
     found, rough = (motion(pulse, stack, points, times, how) for how in (FINE, ROUGH))
     peak, errors = np.abs(pulse(np.asarray(times))).max(), []
     for one, other, unit in zip(found, rough, (1.0, stack.rocks[0].p_impedance), strict=True):
@@ -79,8 +76,8 @@ def motion(
 ) -> WaveMotion:
     """Return the motion at points and times.
 
-    pulse : at the origin, zero before 0 s. points : [m, d], m; one on a joint belongs to the side
-    from which the pulse comes. times : equally spaced, s.
+    pulse : at the origin, zero before 0 s. points : [m, d], m; a point on a joint counts as on the
+    side from which the pulse comes. times : equally spaced, s.
     """
     t, places = np.asarray(times, dtype=float), np.atleast_2d(points) @ stack.axes.rows.T
     modes = stack.modes
@@ -139,8 +136,8 @@ def _waves_of(stack: PulseStack, places: np.ndarray, highest: float) -> Iterator
 
 
 def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return depths [d] that resolve a decay by e^{-decay d} or slower, and their weights [k, d]
-    at `way`. The Chebyshev coefficients of e^{-s x}, 0 to 1, fall as e^{-k^2 / s}."""
+    """Return depths [d] that resolve a decay of e^{-decay d} or slower, and their weights [k, d] at
+    `way`. The Chebyshev coefficients of e^{-s x}, 0 to 1, fall as e^{-k^2 / s}."""
     found, which = np.unique(np.round(way, 9), return_inverse=True)
     wanted = SPARE + np.sqrt(decay * (found[-1] - found[0]) * np.log(1 / NEGLIGIBLE))
     count = int(min(np.ceil(wanted), MOST_NODES))
@@ -154,7 +151,7 @@ def _depths(way: np.ndarray, decay: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _fine_times(stack: PulseStack, waves: list[LayerWave], t: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return the times of amplitudes, s, and the number of their steps per step of `t`."""
+    """Return the times of amplitudes, s, and the number of fine steps per step of `t`."""
     late = np.concatenate([one.delays for one in waves])
     causal = not stack.is_evanescent
     start, dt = 0.0 if causal else min(0.0, t[0] - late.max()), t[1] - t[0]
@@ -167,9 +164,9 @@ def _fine_times(stack: PulseStack, waves: list[LayerWave], t: np.ndarray) -> tup
 def _amplitudes(
     pulse: Pulse, stack: PulseStack, waves: list[LayerWave], fine: np.ndarray, how: Accuracy
 ) -> Iterator[np.ndarray]:
-    """Yield each wave's complex amplitude without the undelayed part (its real part is the motion),
-    [1, samples], or those of an evanescent wave at its depths [d, samples]."""
-    q = stack.slownesses[0, 0]  # of P: where it is evanescent all rocks are the same
+    """Yield each wave's complex amplitude without the undelayed part, [1, samples], or [d, samples]
+    at the depths of an evanescent wave; the motion is its real part."""
+    q = stack.slownesses[0, 0]  # of P; all rocks are equal if it is evanescent
     sharp = np.concatenate(stack.at_once, axis=-1)
     causal = not stack.is_evanescent
     rows = [(one, d) for one in waves for d in (one.depths if one.depths is not None else [0.0])]
@@ -177,8 +174,8 @@ def _amplitudes(
     def inverted(some: list[tuple[LayerWave, float]]) -> np.ndarray:
         def transfer(omega: np.ndarray) -> np.ndarray:
             found = np.concatenate(stack.layers(omega), axis=-1) - sharp[:, None]
-            # Of a strided array numpy multiplies the last numbers by other instructions, with
-            # another last digit.
+            # numpy multiplies the tail of a strided array by other instructions, which differ in
+            # the last digit.
             found = np.ascontiguousarray(np.moveaxis(found, -1, 1))
             decay = [np.exp(1j * omega * q * d) if d else 1.0 for _, d in some]
             return np.array(

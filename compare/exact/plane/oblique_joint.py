@@ -1,17 +1,17 @@
 """P, SV and SH waves at one linear-slip joint at any angle between half-spaces of any rock.
 
 Traction is continuous, [u_n] = tau_n / K_n and [u_s] = tau_s / K_s (Schoenberg, JASA 68, 1980);
-dashpots take K to K - i omega eta. Axes, polarisations and signs are those of `waves`: waves come
-along +n, reflections leave along -n. With the traction (n, s) and the velocity (v, u) of unit P and
-SV waves along +n in the rock before the joint, and those of the rock behind it with primes,
+with dashpots K becomes K - i omega eta. Axes, polarisations and signs are those of `waves`: the
+incident wave travels along +n, reflections along -n. With the traction (n, s) and the velocity (v,
+u) of unit P and SV waves along +n before the joint, and primes for the rock behind it,
 
     n (1 + R) = n' T,   u (1 + R) = (u' + i omega s' / K_s) T,
     s (1 - R) = s' T,   v (1 - R) = (v' + i omega n' / K_n) T,
 
-each equation with K divided by (K - i omega Z) / K; of SH waves, whose traction s and velocity u
-are across the plane of incidence, those of u and s alone. Amplitudes are of particle velocity.
-Valid for every angle below 90 degrees and every K from 0 (free faces) to inf (welded; Zoeppritz
-1919, Aki & Richards, Quantitative Seismology, 2002, section 5.2.4).
+each equation with K divided by (K - i omega Z) / K. For SH waves, whose traction s and velocity u
+are normal to the plane of incidence, the equations of u and s remain. Amplitudes are particle
+velocities. Valid for every angle below 90 degrees and every K from 0 (free faces) to inf (welded;
+Zoeppritz 1919, Aki & Richards, Quantitative Seismology, 2002, section 5.2.4).
 """
 
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ def scattering(
     """
     here, there = (face(one, slowness, kinds) for one in (rock, behind or rock))
     (moves_n, yields_n), (moves_s, yields_s) = (_weights(rock, joint, omega, k) for k in (0, 1))
-    # Of waves along +n and -n before the joint, and along +n behind it; tractions over Z_p.
+    # Waves along +n and -n before the joint, and along +n behind it; tractions over Z_p.
     unit = np.asarray(rock.p_impedance)[..., None]
     n, s, n_behind, s_behind = (
         x / unit for x in (here.normal, here.shear, there.normal, there.shear)
@@ -65,7 +65,7 @@ def scattering(
 def _weights(
     rock: ElasticRock, joint: Joint, omega: Values, axis: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the factors [..., 1] of velocity and of traction (m/s/Pa) across or along a joint."""
+    """Return the factors [..., 1] of velocity and traction (m/s/Pa) normal to or along a joint."""
     K = (joint.normal_stiffness, joint.shear_stiffness)[axis]
     eta = (joint.normal_viscosity, joint.shear_viscosity)[axis]
     Z, rigid = (rock.p_impedance, rock.s_impedance)[axis], np.isinf(K)

@@ -2,17 +2,17 @@
 
 R and T are the matrices of one joint (`oblique_joint.scattering`), R' and T' those from its other
 side, which differ if the rocks on both sides do. E_i = diag(e^{i omega d_i q}) propagates P and SV,
-or SH, over the spacing d_i, with the slownesses q across the joints of the rock there. Behind joint
-i lies a stack of reflection R_{i+1}; from the last joint backwards
+or SH, over the spacing d_i, with the rock's slownesses q across the joints. Behind joint i lies a
+stack of reflection R_{i+1}; from the last joint backwards
 
     Y_i = (I - R' E_i R_{i+1} E_i)^-1 T,   R_i = R + T' E_i R_{i+1} E_i Y_i
 
 and forwards the waves behind each joint are D_i = Y_i E_{i-1} D_{i-1} (Kennett, Seismic Wave
-Propagation in Stratified Media, 1983; at normal incidence Cai & Zhao, IJRMMS 37, 2000).
-No exponential grows: evanescent waves only decay. Axes, signs and validity are those of
+Propagation in Stratified Media, 1983; at normal incidence Cai & Zhao, IJRMMS 37, 2000). No
+exponential grows: evanescent waves only decay. Axes, signs and validity are those of
 `oblique_joint`; joints and layers may differ, unless a wave in differing layers is evanescent.
 
-A pulse is the sum of such harmonic waves. At (x, z) in the axes (t, n) of the joints
+A pulse is a sum of such harmonic waves. At (x, z) in the axes (t, n) of the joints
 
     v(t) = sum over waves of g A e^{i omega (p x +- q z)},   stress likewise (`waves.stress`).
 """
@@ -41,8 +41,8 @@ from jointwave.compare.exact.plane.waves import (
 
 
 class Layers(NamedTuple):
-    """Amplitudes [layers, omega, kinds] along +n at each layer's first joint, along -n at its
-    last; in the half-spaces both at their only joint."""
+    """Amplitudes [layers, omega, kinds] along +n at each layer's first joint, along -n at its last;
+    in the half-spaces both are at their only joint."""
 
     down: np.ndarray
     up: np.ndarray
@@ -56,12 +56,12 @@ def coefficients(
     joints: list[Joint],
     spacings: np.ndarray,
 ) -> np.ndarray:
-    """Return R_p, R_s at the first joint and T_p, T_s at the last one, of SH waves R and T, complex
-    array [4 or 2, ...].
+    """Return R_p, R_s at the first joint and T_p, T_s at the last one, for SH waves R and T,
+    complex array [4 or 2, ...].
 
-    incidence : "P", "SV" or "SH". angle : of travel from the normal, rad. omega : rad/s, Re >= 0;
-    with a positive imaginary part it is a Laplace variable. These and rock are broadcast together.
-    joints : in the order in which the wave meets them. spacings : between them, m, one less.
+    incidence : "P", "SV" or "SH". angle : of travel from the normal, rad. omega : rad/s, Re >= 0,
+    and Im >= 0 as for Laplace variables. angle, omega and rock are broadcast together. joints : in
+    the order in which the wave meets them. spacings : between them, m, one less.
     """
     slowness, kinds = slowness_along(rock, incidence, angle), kinds_with(incidence)
     rocks, incident = [rock] * (len(joints) + 1), np.eye(len(kinds))[kinds.index(incidence)]
@@ -78,7 +78,7 @@ def layers(
     incident: np.ndarray,
     kinds: tuple[Kind, ...] = KINDS,
 ) -> Layers:
-    """Return the waves of all layers under an incident one [kinds] at the first joint.
+    """Return the waves of all layers for an incident wave [kinds] at the first joint.
 
     rocks : of the layers, one more than joints. slowness : s/m.
     """
@@ -108,8 +108,8 @@ def layers(
 class PulseStack(NamedTuple):
     """Joints in the order in which a pulse meets them.
 
-    rocks : of the layers [N + 1]; where they differ no wave may be evanescent. joints : [N].
-    depths : along n, ascending, m, [N].
+    rocks : of the layers [N + 1]; if they differ, no wave may be evanescent. joints : [N]. depths :
+    along n, ascending, m, [N].
     """
 
     axes: Axes
@@ -118,17 +118,16 @@ class PulseStack(NamedTuple):
     depths: np.ndarray
 
     def layers(self, omega: np.ndarray) -> Layers:
-        """Return the waves of all layers at omega (rad/s) under a unit one at the first joint."""
+        """Return the waves of all layers at omega (rad/s) for a unit wave at the first joint."""
         axes, spacings = self.axes, np.diff(self.depths)
         of = self.rocks, self.joints, spacings, axes.slowness, omega, axes.incident
         return layers(*of, axes.kinds)
 
     @property
     def at_once(self) -> Layers:
-        """Real amplitudes [layers, kinds] that follow a pulse without delay, by reflection and
+        """Real amplitudes [layers, kinds] that follow a pulse without delay: reflection and
         transmission at the first joint in the limit of high frequencies, in which springs do not
-        act. Where P is evanescent only the incident wave is real.
-        """
+        act. If P is evanescent, the incident wave only."""
         axes, first = self.axes, self.joints[0]
         down, up = np.zeros((2, len(self.rocks), len(axes.kinds)))
         down[0] = axes.incident
@@ -143,7 +142,7 @@ class PulseStack(NamedTuple):
 
     @property
     def slownesses(self) -> np.ndarray:
-        """Slownesses across the joints of every layer, complex [layers, kinds], s/m."""
+        """Slownesses across the joints in every layer, complex [layers, kinds], s/m."""
         p, kinds = self.axes.slowness, self.axes.kinds
         return np.array([slownesses_across(one, p, kinds) for one in self.rocks])
 
@@ -160,7 +159,7 @@ class PulseStack(NamedTuple):
     @property
     def modes(self) -> np.ndarray:
         """Velocity, and stress over the first rock's Z_p, of unit waves of all kinds, along +n and
-        then along -n [layers, waves, d + components], as of a `WaveMotion`."""
+        then along -n [layers, waves, d + components], in the order of a `WaveMotion`."""
         axes, found = self.axes, []
         for rock, across in zip(self.rocks, self.slownesses, strict=True):
             g = np.tile(axes.rows[2:] + 0j, (2, 1))
@@ -188,7 +187,7 @@ def stack_of(
     ----------
     rocks : of the layers in the order of `offsets`, [N + 1].
     joints : in the order of `offsets`, [N].
-    kind, direction, polarisation : of the pulse, as of `axes_of`.
+    kind, direction, polarisation : of the pulse, see `axes_of`.
     normal : of the joints, unit vector [d].
     offsets : of the joints from the origin along the normal, ascending, m, [N].
     """

@@ -1,26 +1,26 @@
-"""A force at a point of unbounded rock: in plane strain one per length of a line (Achenbach, Wave
+"""A force at a point of unbounded rock: in plane strain a line force per length (Achenbach, Wave
 Propagation in Elastic Solids, 1973; Kausel, Fundamental Solutions in Elastodynamics, 2006), in
 space Stokes' solution (Aki & Richards, Quantitative Seismology, 2002, chapter 4).
 
-With gamma = x/r, an impulse in direction j displaces along i, in the plane by 1 N s per m, with
-s_c = sqrt(t^2 - r^2/c^2) from the arrival r/c on and 0 before,
+With gamma = x/r, an impulse of 1 N s per m in direction j displaces along i in the plane, with s_c
+= sqrt(t^2 - r^2/c^2) from the arrival r/c on and 0 before,
 
     2 pi rho G_ij = gamma_i gamma_j / (a^2 s_a) + (delta_ij - gamma_i gamma_j) / (b^2 s_b)
                     + (2 gamma_i gamma_j - delta_ij) (s_a - s_b) / r^2
 
-and in space by 1 N s, with H_c = 1 from the arrival on and 0 before,
+and an impulse of 1 N s in space, with H_c = 1 from the arrival on and 0 before,
 
     4 pi rho G_ij = gamma_i gamma_j delta(t - r/a) / (a^2 r)
                     + (delta_ij - gamma_i gamma_j) delta(t - r/b) / (b^2 r)
                     + (3 gamma_i gamma_j - delta_ij) t (H_a - H_b) / r^3
 
-and a force f(t) displaces by the convolution of both. In the plane, substituting the delays
+The displacement by a force f(t) is the convolution of both. In the plane, substituting the delays
 (r/a) cosh(eta) up to the arrival of the S wave and (r/b) cosh(eta) after it removes the singular
 roots, and s_a - s_b = (1/b^2 - 1/a^2) r^2 / (s_a + s_b) avoids cancellation. The integrals use
-Gauss-Legendre points between the breaks of f, and the difference from half as many bounds the
-error. G is homogeneous of degree 1 - d in r and t, so that r dG/dr convolved with f is
--(tau G) convolved with f' - (d - 2) G convolved with f, which gives strains and stresses. Valid at
-every place off the force; stress tension positive.
+Gauss-Legendre points between the breaks of f; the difference from half as many points bounds the
+error. G is homogeneous of degree 1 - d in r and t, so that r dG/dr convolved with f is -(tau G)
+convolved with f' - (d - 2) G convolved with f, which gives strains and stresses. Valid everywhere
+except at the force; stress tension positive.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -33,9 +33,9 @@ from jointwave.cases.incident import in_components
 from jointwave.cases.material.rock import ElasticRock
 from jointwave.compare.exact.plane.waves import PlaneMotion
 
-POINTS = 64  # of integration between two breaks
-SAFETY = 2.0  # factor on the difference from half of them
-FLOOR = 1e-13  # of the largest value
+POINTS = 64  # integration points between two breaks
+SAFETY = 2.0  # factor on the difference from half as many points
+FLOOR = 1e-13  # round-off, over the largest value
 
 Signal = Callable[[np.ndarray], np.ndarray]
 
@@ -49,15 +49,15 @@ def motion(
     offsets: np.ndarray,
     times: np.ndarray,
 ) -> PlaneMotion:
-    """Return the motion caused by a force, with bounds at any time.
+    """Return the motion caused by a force, with error bounds that hold at any time.
 
     Parameters
     ----------
     direction : of the force, unit vector [d], d = 2 for a line and 3 for a point.
     force, rate : f (N/m or N), continuous, and its rate (per s), at times (s).
     breaks : ascending, s: f is 0 up to the first and from the last on (which may be inf), and
-        smooth between them, about one cycle at most; a longer signal needs more of them.
-    offsets : of the places from the force, off it, [m, d], m.
+        smooth between them, about one cycle at most; a longer signal needs more breaks.
+    offsets : of the places from the force, not zero, [m, d], m.
     times : s, in any order.
     """
     x, t = np.atleast_2d(offsets), np.asarray(times)
@@ -74,7 +74,7 @@ def motion(
 
 
 def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:
-    """Return displacement, velocity and the components of stress [2 d + 3 or 6, n] at one place."""
+    """Return displacement, velocity and stress components [2 d + 3 or 6, n] at one place."""
     dim, r = len(x), float(np.linalg.norm(x))
     f, v, slope = (np.zeros((2, len(t))) for _ in range(3))
     for at, tau, weights in (_pieces if dim == 2 else _pieces_in_space)(rock, r, breaks, t, points):
@@ -93,7 +93,7 @@ def _motion(rock, d, force, rate, breaks, x, t, points) -> np.ndarray:
 
 
 def _gradient(g, d, r, values, slopes) -> np.ndarray:
-    """Return the gradient of P g (g.d) + Q d, from the values and slopes over r of (P, Q)."""
+    """Return the gradient of P g (g.d) + Q d, from the values and radial slopes of (P, Q)."""
     (P, _), (P_r, Q_r) = values, slopes
     along, across = g @ d, np.eye(len(g)) - np.outer(g, g)
     turned = along * across + np.outer(g, across @ d)
@@ -105,8 +105,8 @@ def _gradient(g, d, r, values, slopes) -> np.ndarray:
 
 
 def _pieces(rock: ElasticRock, r: float, breaks, t: np.ndarray, points: int) -> Iterator[tuple]:
-    """Yield for a line the indices [k] of times that have delays tau, these [k, points], and the
-    weights [(P, Q), k, points] of f(t - tau) there."""
+    """Yield, for a line force, the indices [k] of times, the delays tau [k, points] that
+    contribute, and the weights [(P, Q), k, points] of f(t - tau)."""
     nodes, weights = leggauss(points)
     fast, slow = r / rock.p_speed, r / rock.s_speed
     for near, far in pairwise(breaks):
@@ -132,7 +132,7 @@ def _kernel(rock: ElasticRock, sinh: np.ndarray, region: int) -> np.ndarray:
 def _pieces_in_space(
     rock: ElasticRock, r: float, breaks, t: np.ndarray, points: int
 ) -> Iterator[tuple]:
-    """Yield the same for a point: both arrivals, and the near field between them."""
+    """Yield the same for a point force: both arrivals, and the near field between them."""
     arrivals = r / rock.p_speed, r / rock.s_speed
     for arrival, shares in zip(arrivals, ([1.0, 0.0], [-1.0, 1.0]), strict=True):
         at = np.flatnonzero((t - arrival > breaks[0]) & (t - arrival < breaks[-1]))

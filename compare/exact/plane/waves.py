@@ -1,16 +1,16 @@
 """Plane P, SV and SH waves in isotropic rock, incident on a plane face or joint.
 
-Factor e^{-i omega t}; stress tension positive. The axes of the face are t along it and n across
-it, p is the slowness along t that all waves share (Aki & Richards, Quantitative Seismology, 2002,
-chapter 5). With the sines a' = a p, s = b p and the cosines c = sqrt(1 - a'^2), k = sqrt(1 - s^2),
-waves along +n and -n have the polarisations (t, n)
+Factor e^{-i omega t}; stress tension positive. The face has the axes t along it and n across it; p
+is the slowness along t that all waves share (Aki & Richards, Quantitative Seismology, 2002, chapter
+5). With the sines a' = a p, s = b p and the cosines c = sqrt(1 - a'^2), k = sqrt(1 - s^2), waves
+along +n and -n have the polarisations (t, n)
 
     P+- = (a', +-c),   SV+ = (k, -s),   SV- = (k, s)
 
-so that a wave and its mirror image have the same amplitude. SV+ is its direction of travel rotated
-by a right angle from n to t. SH waves move along b, across t and n. Beyond the critical angle c is
-imaginary, +i |c|: for Re(omega) > 0 the P wave decays away from the face. For negative frequencies
-take complex conjugates.
+so that a wave and its mirror image have the same amplitude. The SV+ polarisation is its direction
+of travel rotated by a right angle from n to t. SH waves move along b, normal to t and n. Beyond the
+critical angle c is imaginary, +i |c|: for Re(omega) > 0 the P wave decays away from the face. For
+negative frequencies take complex conjugates.
 """
 
 from typing import Literal, NamedTuple
@@ -20,27 +20,27 @@ import numpy as np
 from jointwave.cases.material.rock import ElasticRock, Values
 
 Kind = Literal["P", "SV", "SH"]
-#: Kinds of waves that a face turns into each other: in the plane of incidence, and across it.
+#: Kinds of waves that a face converts into each other: in the plane of incidence, and normal to it.
 KINDS: tuple[Kind, ...] = ("P", "SV")
 ACROSS: tuple[Kind, ...] = ("SH",)
-STRAIGHT = 1e-6  #: sine of the largest angle from the normal at which a wave travels along it
+STRAIGHT = 1e-6  #: sine of the largest angle from the normal that counts as normal incidence
 
 
 class Face(NamedTuple):
-    """A face under unit waves (m/s) along +n: complex arrays [..., kinds].
+    """Tractions and velocities on a face under unit waves (m/s) along +n: complex [..., kinds].
 
     For waves along -n, `shear` and `normal_velocity` change sign.
     """
 
     normal: np.ndarray  # sigma_nn, Pa
-    shear: np.ndarray  # sigma_tn, of SH sigma_bn, Pa
+    shear: np.ndarray  # sigma_tn, for SH sigma_bn, Pa
     normal_velocity: np.ndarray
     shear_velocity: np.ndarray
 
 
 class PlaneMotion(NamedTuple):
-    """Motion at m places, arrays [m, components, times], and bounds [m, components] on its error:
-    displacement (m), velocity (m/s) and stress (Pa, tension positive), as of a `WaveMotion`."""
+    """Displacement (m), velocity (m/s) and stress (Pa, as in `WaveMotion`) at m places, arrays [m,
+    components, times], and error bounds [m, components]."""
 
     displacement: np.ndarray
     velocity: np.ndarray
@@ -51,7 +51,7 @@ class PlaneMotion(NamedTuple):
 
 
 def kinds_with(kind: Kind) -> tuple[Kind, ...]:
-    """Return the kinds of waves that a face turns one into, itself included."""
+    """Return the kinds of waves into which a face converts a kind, itself included."""
     return KINDS if kind in KINDS else ACROSS
 
 
@@ -61,14 +61,14 @@ def speed_of(rock: ElasticRock, kind: Kind) -> Values:
 
 
 def slowness_along(rock: ElasticRock, kind: Kind, angle: Values) -> np.ndarray:
-    """Return p (s/m) of a wave at `angle` from n towards t, rad, less than a right one."""
+    """Return p (s/m) of a wave at `angle` from n towards t, rad, below a right angle."""
     return np.sin(angle) / np.asarray(speed_of(rock, kind))
 
 
 class Axes(NamedTuple):
-    """Axes of the joints: rows t, n and, in space, b in those of the scene [d, d], n along the
-    travel; slowness p along t (s/m); the kind of the incident wave, and amplitudes of all `kinds`
-    that it becomes, of which its own alone is not zero."""
+    """Axes of the joints: rows t, n and, in space, b in scene coordinates [d, d], n in the sense of
+    travel; slowness p along t (s/m); kind of the incident wave, and its amplitudes for all
+    `kinds`."""
 
     rows: np.ndarray
     slowness: float
@@ -77,7 +77,7 @@ class Axes(NamedTuple):
 
     @property
     def kinds(self) -> tuple[Kind, ...]:
-        """The kinds of waves that there are."""
+        """The kinds of waves that occur."""
         return kinds_with(self.kind)
 
 
@@ -88,11 +88,11 @@ def axes_of(
     normal: np.ndarray,
     polarisation: np.ndarray | None = None,
 ) -> Axes:
-    """Return the axes of joints of a unit normal [d] for waves that travel in a direction [d], not
+    """Return the axes of joints with a unit normal [d] for waves with a direction [d] that is not
     along the joints.
 
-    polarisation : of an S wave in space [3]: the part of it that moves rock as its kind does is the
-    incident amplitude.
+    polarisation : of an S wave in space [3]; the incident amplitude is its part along the motion of
+    the given kind.
     """
     direction = np.asarray(direction) / np.linalg.norm(direction)
     n = np.asarray(normal) * (1.0 if direction @ normal > 0 else -1.0)
@@ -115,7 +115,7 @@ def axes_of(
 
 
 def cosines(rock: ElasticRock, slowness: Values) -> tuple[np.ndarray, np.ndarray]:
-    """Return c and k, complex; slowness p in s/m."""
+    """Return the complex cosines c and k; slowness p in s/m."""
     sines = np.asarray(rock.p_speed * slowness), np.asarray(rock.s_speed * slowness)
     c, k = (np.sqrt((1 - x) * (1 + x) + 0j) for x in sines)
     return c, k
@@ -129,14 +129,14 @@ def is_evanescent(rock: ElasticRock, slowness: float) -> bool:
 def slownesses_across(
     rock: ElasticRock, slowness: Values, kinds: tuple[Kind, ...] = KINDS
 ) -> np.ndarray:
-    """Return c/a of P and k/b of S (s/m), complex array [..., kinds]."""
+    """Return c/a for P and k/b for S (s/m), complex array [..., kinds]."""
     c, k = cosines(rock, slowness)
     found = np.stack(np.broadcast_arrays(c / rock.p_speed, k / rock.s_speed), axis=-1)
     return found if kinds == KINDS else found[..., 1:]
 
 
 def face(rock: ElasticRock, slowness: Values, kinds: tuple[Kind, ...] = KINDS) -> Face:
-    """Return traction and velocity of unit waves along +n of slowness p (s/m) on a face."""
+    """Return tractions and velocities of unit waves along +n with slowness p (s/m) on a face."""
     c, k = cosines(rock, slowness)
     a, s = rock.p_speed * slowness, rock.s_speed * slowness
     if kinds == ACROSS:

@@ -1,1 +1,1 @@
-"""Exact solutions of whole rock masses: their conditions and results."""
+"""Exact solutions of whole rock masses: conditions and results."""

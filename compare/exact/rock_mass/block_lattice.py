@@ -1,12 +1,12 @@
-"""Scenes of rigid blocks between the joints of a rock mass, exactly in time (`blocks.system`).
+"""Rigid blocks between the joints of a rock mass, exact in time (`blocks.system`).
 
-The model of the rigid-block engine without its time steps: joints with the stiffness of those
-between rigid blocks (`cases.material.rigid_blocks`), dashpots and the incident field on quiet
-sides, a cubic between IN_A_PERIOD samples per period. Taylor series (`blocks.events`) err by
-round-off; a perturbed twin with half as many samples bounds the error.
+The rigid-block engine's model without time steps: joints with the stiffness of those between rigid
+blocks (`cases.material.rigid_blocks`), dashpots and the incident field on quiet sides, with cubic
+interpolation between IN_A_PERIOD samples per period. Taylor series (`blocks.events`) are accurate
+to round-off; a perturbed twin with half as many samples bounds the error.
 
-Valid for linear joints without dashpots that cut all of the rock into blocks, waves only, sides
-that are quiet, free or periodic, and up to MOST_BLOCKS blocks.
+Valid for linear joints without dashpots that cut all of the rock into blocks, waves only, quiet,
+free or periodic sides, and up to MOST_BLOCKS blocks.
 """
 
 from itertools import product
@@ -38,7 +38,7 @@ from jointwave.results.dataset import dataset
 
 MOST_BLOCKS = {2: 1000, 3: 500}  #: by the number of dimensions
 FREEDOMS = {2: 3, 3: 6}  #: of a block, by the number of dimensions
-IN_A_PERIOD = 400  #: samples of the field per period per period
+IN_A_PERIOD = 400  #: samples of the field per period
 
 
 def applies(scene: RockMass) -> Answer:
@@ -87,8 +87,8 @@ def solve(scene: RockMass) -> xr.Dataset:
 
 def masses(scene: RockMass, blocks: Blocks) -> tuple[np.ndarray, csr_array]:
     """Return masses (kg) and principal moments of inertia (kg m2) of all blocks [N, f], in the
-    plane per m; and what takes their freedoms, rotations about principal axes, to those about the
-    axes of the scene, sparse [N f, N f]."""
+    plane per m; and the sparse matrix [N f, N f] from motion with rotations about principal axes to
+    motion with rotations about the scene's axes."""
     count, dim = blocks.centroid.shape
     inertia = np.trace(blocks.second_moment, axis1=1, axis2=2)[:, None, None] * np.eye(1)
     if dim == 3:
@@ -101,7 +101,7 @@ def masses(scene: RockMass, blocks: Blocks) -> tuple[np.ndarray, csr_array]:
 
 
 def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
-    """Return the contacts of blocks, and those across periodic sides."""
+    """Return the contacts between blocks, including those across periodic sides."""
     further, parts = further_sets(scene), []
     joints, sets = rigid_joints(scene, further), [*scene.joint_sets, *further]
     springs = np.stack([joints.normal, joints.shear], axis=1)
@@ -120,8 +120,8 @@ def _between_blocks(scene: RockMass, blocks: Blocks) -> list[Contacts]:
 
 
 def _quiet(scene: RockMass, blocks: Blocks) -> tuple[Contacts, np.ndarray]:
-    """Return the dashpots of the facets of quiet sides, and orthogonal unit vectors in each, the
-    first along its first edge [c, d - 1, d]."""
+    """Return the dashpots on facets of quiet sides, and orthogonal unit vectors in each facet [c, d
+    - 1, d], the first along its first edge."""
     outer, held = blocks.boundary, scene.boundaries.model_dump()
     own = np.array([held.get(name) == "quiet" for name in shape_of(scene.domain).sides])[outer.side]
     impedance = np.zeros((len(own), *2 * outer.normal.shape[1:]))
@@ -138,9 +138,9 @@ def _quiet(scene: RockMass, blocks: Blocks) -> tuple[Contacts, np.ndarray]:
 def _incident(
     scene: RockMass, blocks: Blocks, quiet: Contacts, edges: np.ndarray, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the freedoms [k] of blocks on quiet sides, and the forces on them [n, k], N and N m,
-    in the plane per m, of the incident field at points of each facet: those one standard deviation
-    of its area from its centroid along its edge and across, on a rectangle Gauss points."""
+    """Return the degrees of freedom [k] of blocks on quiet sides, and the incident field's forces
+    on them [n, k], N and N m, in the plane per m. Each facet has points one standard deviation of
+    its area from the centroid, along its first edge and across: Gauss points of a rectangle."""
     dim, area = quiet.normal.shape[1], quiet.area[:, None, None]
     variance, axes = np.linalg.eigh(quiet.second / area)
     deviation = (axes * np.sqrt(np.maximum(variance, 0.0))[:, None]) @ axes.swapaxes(1, 2)
@@ -160,8 +160,8 @@ def _incident(
 
 
 def reads(scene: RockMass, blocks: Blocks) -> csr_array:
-    """Return the matrix from the motion of all blocks to that of the points of a scene, sparse
-    [d points, f N]; on joints the mean of the blocks there."""
+    """Return the sparse matrix [d points, f N] from the motion of all blocks to that of a scene's
+    points; on joints the mean of the blocks there."""
     points, dim = np.array(scene.record.points), scene.domain.dimension
     sides = sides_at(blocks, points, len(scene.joint_sets))
     count = np.array(list(map(len, sides)))

@@ -1,4 +1,4 @@
-"""The physics of a rock mass that an exact solution must cover."""
+"""Conditions under which an exact solution covers a rock mass."""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -15,13 +15,13 @@ from jointwave.cases.schema.rock_mass import Region, RockMass
 from jointwave.compare.solvers.record import Answer
 
 PARALLEL = 1e-6  #: sine of the largest angle between directions that count as parallel
-#: Sine of the angle to joints, layers or a free face, 1 degree, up to which a wave runs along them:
-#: plane waves have no motion there, since what is reflected cancels them.
+#: Sine of 1 degree, the angle to joints, layers or a free face below which a wave counts as running
+#: along them: its reflection cancels it there.
 ALONG = 0.0175
 
 
 class Face(NamedTuple):
-    """A free face: its outward unit normal [d], and its distance from the origin along that, m."""
+    """A free face: outward unit normal [d], and distance from the origin along it, m."""
 
     normal: np.ndarray
     offset: float
@@ -31,8 +31,8 @@ def holds(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) ->
     """Return whether a solution for linear joints in undamped rock applies to a scene, or the first
     reason why not.
 
-    held : physics that it covers, of the names below. against : other conditions that exclude it,
-    each with its reason.
+    held : physics that it covers, by the names below. against : other conditions that exclude it,
+    with reasons.
     """
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     damped = any(one.damping_ratio for one in scene.joint_sets)
@@ -51,7 +51,7 @@ def holds(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) ->
 
 
 def linear_rock(scene: RockMass) -> Answer:
-    """Return whether a scene is undamped rock with linear joints."""
+    """Return whether a scene is undamped rock with linear joints, or why not."""
     damping, meshed = scene.damping, scene.domain.given is not None and bool(scene.joint_sets)
     return Answer.unless(
         (bool(damping.alpha), "the damping is proportional to mass"),
@@ -64,7 +64,7 @@ def linear_rock(scene: RockMass) -> Answer:
 
 
 def linear_law(one: JointSet) -> Answer:
-    """Return whether the law of a joint set is linear."""
+    """Return whether the law of a joint set is linear, or why not."""
     slips = one.friction_angle is not None or one.cohesion is not None
     return Answer.unless(
         (one.tension is False, f"joint set {one.name!r} carries no tension"),
@@ -74,9 +74,9 @@ def linear_law(one: JointSet) -> Answer:
 
 
 def waves_leave(scene: RockMass, face: Face | None = None) -> Answer:
-    """Return whether waves leave through all sides but a free face: each other side must be quiet,
-    or periodic with waves and joints uniform along the direction to its partner, or rollers beside
-    such P waves."""
+    """Return whether waves leave through all sides except a free face: each other side must be
+    quiet; or periodic, with waves and joints invariant along the shift; or a roller side, if they
+    also do not move rock normal to it."""
     for side, normals in shape_of(scene.domain).normals().items():
         held = getattr(scene.boundaries, side)
         if held == "periodic" and not _is_invariant(scene, side):
@@ -92,8 +92,8 @@ def waves_leave(scene: RockMass, face: Face | None = None) -> Answer:
 
 
 def free_face(scene: RockMass) -> Face | None:
-    """Return the free face that waves of a scene reach; None where they reach none, or several that
-    are not one plane."""
+    """Return the plane free face that waves of a scene reach; None without one, or if there are
+    several."""
     outline, found = shape_of(scene.domain), []
     for side in outline.normals():
         if getattr(scene.boundaries, side) == "free":
@@ -108,31 +108,30 @@ def free_face(scene: RockMass) -> Face | None:
 
 
 def prestress_of(scene: RockMass) -> np.ndarray:
-    """Return the components of the initial stress of a scene, before any load, Pa, compression
-    positive."""
+    """Return the components of a scene's initial stress, Pa, compression positive."""
     dim = scene.domain.dimension
     tensor = np.zeros((dim, dim)) if scene.prestress is None else scene.prestress.tensor
     return in_components(tensor)
 
 
 def all_parallel(scene: RockMass) -> bool:
-    """Return whether all joints of a scene, and boundaries of its regions, are parallel."""
+    """Return whether all joints and region boundaries of a scene are parallel."""
     return all(along(*pair) for pair in pairwise(normals_of(scene)))
 
 
 def normals_of(scene: RockMass) -> list[np.ndarray]:
-    """Return unit normals [d] of the joint sets and of the boundaries of regions."""
+    """Return unit normals [d] of the joint sets and region boundaries."""
     planes: list[JointSet | Region] = [*scene.joint_sets, *strata(scene.regions)]
     return [one.normal for one in planes]
 
 
 def along(one: np.ndarray, other: np.ndarray, sine: float = PARALLEL) -> bool:
-    """Return whether two unit vectors have the same or opposite directions."""
+    """Return whether two unit vectors are parallel, in the same or opposite sense."""
     return bool(np.linalg.norm(one - (one @ other) * other) < sine)
 
 
 def _is_invariant(scene: RockMass, side: str) -> bool:
-    """Return whether joints and waves do not vary along the axis that a side lies across."""
+    """Return whether joints and waves do not vary along the axis normal to a side."""
     dim = scene.domain.dimension
     axis = np.eye(dim)[SIDES[dim].index(side) // 2]
     every = [*normals_of(scene), *(np.array(one.direction) for one in scene.waves)]

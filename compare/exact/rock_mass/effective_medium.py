@@ -1,14 +1,14 @@
 """Scenes of plane waves in densely jointed rock, as waves of its effective medium.
 
-A wave is that of the medium (`cases.material.effective_medium`) along the direction that the scene
-gives, at its own speed: for P the one that moves rock most along this direction, which joints that
-open easily make the slowest, for S that of the others with the polarisation nearest to the scene's.
-`quantity = "stress"` is the traction on its front, rho c v. Where joints cross, it enters all
-engines through their quiet sides, since the rock beyond is jointed too and transmits no wave of
-intact rock: the solution is exact for the homogenised rock, and approximate for the jointed one if
+A wave travels in the medium (`cases.material.effective_medium`) in the scene's direction, at the
+medium's speed: P is the wave whose motion is most nearly along this direction, and is the slowest
+if joints open easily; S is the other wave whose polarisation is nearest to the scene's. `quantity =
+"stress"` is the traction on the wave front, rho c v. Where joints cross, it enters all engines
+through their quiet sides, since the rock beyond is jointed too and transmits no wave of intact
+rock: the solution is exact for homogenised rock, and approximate for jointed rock in which
 wavelengths are large compared with the spacings.
 
-A free face sends back the two waves of the medium with the same slowness along it that leave no
+A free face reflects the two waves of the medium that have the same slowness along it and cancel the
 traction there.
 
 Valid for any crossing sets of linear joints without dashpots, in undamped rock with other sides
@@ -40,13 +40,13 @@ from jointwave.compare.exact.rock_mass.conditions import (
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
-ALIKE = 1e-9  # two speeds, relative
+ALIKE = 1e-9  # relative difference below which speeds are equal
 
 
 @dataclass(frozen=True)
 class MediumWave(PlaneWave):
-    """A plane wave of a medium: its polarisation is a unit vector times a share; stress : at 1 m/s,
-    as of a `WaveMotion`, Pa, tension positive."""
+    """A plane wave of a medium; its polarisation is a unit vector times an amplitude. stress : at 1
+    m/s, in the components of a `WaveMotion`, Pa, tension positive."""
 
     stress: np.ndarray
 
@@ -59,8 +59,8 @@ class MediumField(PlaneWaves):
 
 
 def medium_field(scene: RockMass) -> MediumField:
-    """Return the waves of a scene in its effective medium, and those that its free face sends back;
-    all its sets must have a spacing."""
+    """Return the waves of a scene in its effective medium and their reflections from a free face;
+    all joint sets must have a spacing."""
     C, face = medium_stiffness(scene), None if scene.in_space else free_face(scene)
     waves = [medium_wave(scene, one, C) for one in scene.waves]
     back = [] if face is None else [x for one in waves for x in _sent_back(one, C, scene, face)]
@@ -68,8 +68,8 @@ def medium_field(scene: RockMass) -> MediumField:
 
 
 def medium_stiffness(scene: RockMass) -> np.ndarray:
-    """Return the stiffness of the medium in Voigt's form, Pa: of joints that stiffen, under the
-    initial stress in the middle of the domain."""
+    """Return the stiffness of the medium in Voigt's form, Pa, with joints closed by the initial
+    stress in the middle of the domain."""
     middle = np.mean(scene.domain.corners, axis=0)[None]
     sets = compliant(scene.joint_sets, initial_stress(scene, middle)[0])
     return stiffness(elastic_rock(scene.rock), sets, scene.domain.dimension)
@@ -85,7 +85,7 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
         shared[branch] = -1.0
         branch = int(shared.argmax())
     c = float(found[branch])
-    alike = shapes[:, np.abs(found - c) < ALIKE * c]  # any S waves of one speed are such waves
+    alike = shapes[:, np.abs(found - c) < ALIKE * c]  # S waves of equal speed may be combined
     g = alike @ (along @ alike)
     g = g / np.linalg.norm(g)
     full = np.einsum("ijkl,k,l->ij", tensor(C), g, n) / c
@@ -97,9 +97,9 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
 
 
 def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:
-    """Return the waves in a medium of stiffness C that a free face makes of another: those of the
-    slownesses p t + q m, with its own p along the face, that travel away from it, so that no
-    traction is left on the face; without those that decay from it."""
+    """Return the reflections of a wave from a free face of a medium of stiffness C: the waves with
+    slownesses p t + q m, with the incident p along the face, that travel away from it and cancel
+    the traction on it; waves that decay from the face are left out."""
     m, density, c = face.normal, scene.rock.density, tensor(C)
     t, slowness = np.array([-m[1], m[0]]), wave.direction / wave.speed
     p = slowness @ t
@@ -119,7 +119,7 @@ def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> 
             found.append((s, g, stress))
     pulled = wave.stress[COMPONENT[2]] @ m
     share = np.linalg.lstsq(np.array([s @ m for *_, s in found]).T, -pulled, rcond=None)[0]
-    at = wave.through + (face.offset - wave.through @ m) * m  # and the pulse begins there
+    at = wave.through + (face.offset - wave.through @ m) * m  # where the pulse meets the face
     late, back = wave.lateness(at[None])[0], []
     for (s, g, stress), r in zip(found, share, strict=True):
         speed = float(1 / np.hypot(*s))
@@ -129,7 +129,7 @@ def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> 
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether the scene has waves in an effective medium only."""
+    """Return whether the scene has only waves, and they travel in an effective medium."""
     face = None if scene.in_space else free_face(scene)
     answer = holds(
         scene,

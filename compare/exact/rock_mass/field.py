@@ -1,13 +1,13 @@
-"""The incident field of a scene.
+"""The incident field of a scene, which acts on all quiet sides.
 
-It is that of the parallel planes of the scene: joints with the stiffness that they have at first,
-boundaries of layers and a free face. If joints cross and all have a spacing it is that of the waves
-in their effective medium, since the rock beyond transmits no wave of intact rock; else that of the
-waves in intact rock. One joint that stiffens or slips at normal incidence has its own exact field.
+It is the field of the scene's parallel planes: joints with their initial stiffness, boundaries of
+layers and a free face. If joints cross and all have a spacing, it is that of plane waves in their
+effective medium, since the rock beyond transmits no wave of intact rock; otherwise that of waves in
+intact rock. A single joint that stiffens or slips at normal incidence has its own exact field.
 
-It acts on all quiet sides, and is exact there where the planes are all that there is and joints
-stay linear: errors inside are then the engine's own. 1000 points and 2000 times of one joint take
-about 0.5 s of CPU time, 1 s where P waves are evanescent.
+The field is exact if the scene has only these planes and joints stay linear: errors inside are then
+the engine's own. 1000 points and 2000 times of one joint take about 0.5 s of CPU time, 1 s with
+evanescent P waves.
 """
 
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ from jointwave.compare.exact.rock_mass.stack import JointStack, scatters, stack_
 
 @dataclass(frozen=True)
 class StackField:
-    """The waves of a scene with all reflections and transmissions at its parallel joints."""
+    """The waves of a scene with all reflections and transmissions at its parallel planes."""
 
     stack: JointStack
     waves: tuple[PlaneWave, ...]
@@ -62,10 +62,8 @@ class StackField:
 
 
 def field_of(scene: RockMass) -> IncidentField:
-    """Return the field of the waves of a scene that acts on all its quiet sides.
-
-    Raises SceneError where it is not known.
-    """
+    """Return the field of a scene's waves on its quiet sides. Raises SceneError if it is
+    unknown."""
     if not scene.waves:
         return free_field(scene)
     if normal_incidence.applies(scene):
@@ -82,8 +80,8 @@ def field_of(scene: RockMass) -> IncidentField:
 
 
 def _planes_in_space(scene: RockMass) -> RockMass:
-    """Return a scene in space if all of its planes are a stack, else without them; raises
-    SceneError where joints that are alone, other rock or sides send waves back otherwise."""
+    """Return a scene in space if all of its planes form a stack, else without them. Raises
+    SceneError if single joints, other rock or sides reflect waves otherwise."""
     sides, of = SIDES[3][: 6 + (scene.domain.given is not None)], scene.boundaries
     known, face = scatters(scene, leaves=False), free_face(scene)
     normals, shape = normals_of(scene), shape_of(scene.domain)
@@ -109,12 +107,12 @@ def _planes_in_space(scene: RockMass) -> RockMass:
 
 
 def planes_of(scene: RockMass) -> RockMass:
-    """Return a scene with those of its joints, boundaries of regions and free face alone that are a
-    stack of parallel planes; raises SceneError where the waves between the others are not known.
+    """Return a scene reduced to joints, region boundaries and a free face that form a stack of
+    parallel planes. Raises SceneError if the waves between the remaining layers are unknown.
 
-    In the plane, of joints that cross layers, or are not parallel, none, nor those that periodic
-    sides repeat; of a free face that is not parallel to layers none, else no joint that is not
-    parallel to it.
+    In the plane, joints that cross layers, are not parallel or vary along periodic sides are left
+    out; so is a free face not parallel to layers, or, without layers, joints not parallel to the
+    face.
     """
     if scene.in_space:
         return _planes_in_space(scene)
@@ -143,14 +141,13 @@ def planes_of(scene: RockMass) -> RockMass:
     if sets == scene.joint_sets and layers == scene.regions and not sides:
         return scene
     changes = {"joint_sets": sets, "boundaries": scene.boundaries.model_copy(update=sides)}
-    if len(sets) < len(scene.joint_sets):  # nor what only these let be cut into convex blocks
+    if len(sets) < len(scene.joint_sets):  # the openings may need these joints for convex blocks
         changes["domain"] = Domain(outline=scene.domain.corners, non_convex="cut")
     return planes.model_copy(update=changes)
 
 
 def _in_layers(scene: RockMass) -> list[JointSet]:
-    """Return the joint sets of a scene that are not in regions with an outline alone, nor given by
-    a mesh."""
+    """Return the joint sets of a scene, restricted to layers; none if a mesh gives the joints."""
     names = {REST, *(one.name for one in strata(scene.regions))}
     if scene.domain.given is not None:
         return []

@@ -1,11 +1,11 @@
-"""Scenes of plane waves at normal incidence on one joint that is not linear: a P wave under which
-it stiffens (`joint.closing_joint`), and an S wave under which it slips (`joint.slip_phases`).
+"""Scenes of plane waves at normal incidence on one nonlinear joint: a P wave that makes it stiffen
+(`joint.closing_joint`), and an S wave that makes it slip (`joint.slip_phases`).
 
 Valid for one such joint without dashpots in undamped rock with sides through which waves leave, and
-one wave of either kind. The prestress may shear the joint along the motion of the S wave, by less
-than its strength; the joint may weaken with slip or lose cohesion, and does not dilate. The P wave
-changes its normal stress, which stays compressive. P: the stress along the front is nu / (1 - nu)
-of that across it.
+at most one wave of each kind. The prestress may shear the joint along the motion of the S wave, by
+less than its strength; the joint may weaken with slip or lose cohesion, and does not dilate. The P
+wave changes its normal stress, which stays compressive. The P wave's stress along the front is nu /
+(1 - nu) of that across it.
 """
 
 from typing import Any, NamedTuple
@@ -36,13 +36,13 @@ CLOSES = ("maximum_closure",)
 WEAKENS = next(part for part in PARTS if part.name == "weakening")
 SLIPS = ("friction_angle", "cohesion", "residual_cohesion", *WEAKENS.keys)
 BESIDE = 2e-9  # m
-ROUND_OFF = 1e-11  # of the largest of a waveform
-SHEARED = 1e-9  # of the prestress: less shear along a joint is none
-LINEAR = np.inf  # m, the largest closure of a joint without one
+ROUND_OFF = 1e-11  # over the largest value of a waveform
+SHEARED = 1e-9  # shear along a joint over the prestress that is neglected
+LINEAR = np.inf  # m, maximum closure of a linear joint
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether waves meet one joint at normal incidence that stiffens or slips under them."""
+    """Return whether waves meet one joint at normal incidence that stiffens or slips."""
     sets, waves = scene.joint_sets, {one.kind: one for one in scene.waves}
     keys = (*SLIPS, *CLOSES, "tension") if "S" in waves else CLOSES
     if all(getattr(one, key) is None for one in sets for key in (*CLOSES, *SLIPS[:2])):
@@ -64,7 +64,7 @@ def applies(scene: RockMass) -> Answer:
 
 
 def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:
-    """Return whether the slip of a joint under an S wave is that of `slip_phases`."""
+    """Return whether `slip_phases` covers the slip of a joint under an S wave."""
     if one.friction_angle is None and one.cohesion is None:
         return Answer("the joint cannot slip under an S wave: see oblique-joint")
     wave = next(plane_wave(scene, each) for each in scene.waves if each.kind == "S")
@@ -88,8 +88,8 @@ def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:
 
 
 def carried(scene: RockMass, wave: PlaneWave) -> tuple[float, float, float]:
-    """Return what the joint carries before an S wave, Pa: normal stress, shear along the motion of
-    the wave, and the rest of the shear."""
+    """Return the joint's initial stress for an S wave, Pa: normal stress, shear along the motion of
+    the wave, and the remaining shear."""
     if scene.prestress is None:
         return 0.0, 0.0, 0.0
     n, g = wave.direction, wave.polarisation
@@ -99,12 +99,12 @@ def carried(scene: RockMass, wave: PlaneWave) -> tuple[float, float, float]:
 
 
 def solve(scene: RockMass) -> xr.Dataset:
-    """Return the receivers' records of the waves at the joint."""
+    """Return the records of all receivers for the waves at the joint."""
     return stack_waves.solve(scene, SOLVER.name, _motion)
 
 
 def slip_joint(one: JointSet, normal: float, shear: float = 0.0, y: float = 0.0) -> SlipJoint:
-    """Return a joint at y (m) under a normal and a shear stress (Pa), as `slip_phases` has it."""
+    """Return a joint at y (m) under initial normal and shear stress (Pa) for `slip_phases`."""
     cohesion, friction = one.cohesion or 0.0, tangent(one.friction_angle)
     assert one.shear_stiffness
     distance, left = WEAKENS.parameters(one)
@@ -117,8 +117,8 @@ def slip_joint(one: JointSet, normal: float, shear: float = 0.0, y: float = 0.0)
 
 
 class NormalWave(NamedTuple):
-    """A wave of a scene, the impedance of rock for it, Pa s/m, where along it the joint lies, m,
-    and the stress that it brings."""
+    """A wave of a scene, the rock's impedance for it, Pa s/m, the joint's place along it, m, and
+    its incident stress as a function of time."""
 
     wave: PlaneWave
     impedance: float
@@ -136,14 +136,14 @@ class NormalWave(NamedTuple):
 
     @property
     def arrival(self) -> float:
-        """When it meets the joint, s."""
+        """Arrival time at the joint, s."""
         return self.y / self.wave.speed
 
 
 class NormalField:
-    """The waves of a scene with reflection and transmission: `cases.incident.IncidentField`.
+    """The waves of a scene with reflection and transmission (an `IncidentField`).
 
-    which : 1 for the twin, whose tolerances are larger.
+    which : 1 for the twin with larger tolerances.
     """
 
     def __init__(self, scene: RockMass, which: int = 0) -> None:
@@ -174,7 +174,7 @@ def _around(
 ) -> tuple[np.ndarray, ...]:
     """Return the motion of one wave, as `NormalField.motion` does."""
     y, joint, wave = (points - met.wave.through) @ met.wave.direction, met.y, met.wave
-    # On one side of the joint, not on it, where velocity and stress along it have no one value.
+    # Move places off the joint, on which velocity and tangential stress are not unique.
     y = joint + np.copysign(np.maximum(np.abs(y - joint), BESIDE), y - joint)
     there, back = around(joint, wave.speed, passed, met.load, times, y)
     velocity, moved = (there - back)[:, :, None] / met.impedance * wave.polarisation[:, None]
@@ -183,7 +183,7 @@ def _around(
 
 
 def _closing(scene: RockMass, met: NormalWave, end: float, which: int) -> closing_joint.Passed:
-    """Return what of a P wave passes the joint of a scene, up to `end` (s)."""
+    """Return the transmission of a P wave through the joint of a scene up to `end` (s)."""
     one, n = scene.joint_sets[0], met.wave.direction
     assert one.normal_stiffness
     normal = float(n @ scene.prestress.tensor @ n) if scene.prestress else 0.0
@@ -194,7 +194,7 @@ def _closing(scene: RockMass, met: NormalWave, end: float, which: int) -> closin
 
 
 def _pressed(shears: NormalWave, met: NormalWave, passed: closing_joint.Passed) -> Pressed:
-    """Return what a P wave adds to the pressure on the joint, over the time of an S wave there."""
+    """Return the pressure that a P wave adds on the joint, over the time of an S wave there."""
     late = shears.arrival - met.arrival
     breaks = [t - late for t in met.load.breaks]
     return Pressed(lambda t: passed.with_rate(np.asarray(t) + late), breaks)
@@ -203,7 +203,7 @@ def _pressed(shears: NormalWave, met: NormalWave, passed: closing_joint.Passed) 
 def _slipping(
     scene: RockMass, met: NormalWave, end: float, which: int, pressed: Pressed
 ) -> slip_phases.Passed:
-    """Return what of an S wave passes the joint of a scene, up to `end` (s)."""
+    """Return the transmission of an S wave through the joint of a scene up to `end` (s)."""
     normal, shear, _ = carried(scene, met.wave)
     joint = slip_joint(scene.joint_sets[0], normal, shear, met.y)
     tolerance = slip_phases.TOLERANCES[which]

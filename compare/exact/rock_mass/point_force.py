@@ -1,8 +1,9 @@
-"""Scenes of forces at points of rock without joints (`plane.point_force`), of lines in the plane.
+"""Scenes of forces at points of rock without joints (`plane.point_force`); line forces in the
+plane.
 
-Valid for any forces that do not jump, in undamped rock without joints and openings, with any
-supports of the sides: up to `known_until`, the earliest arrival at a receiver of a P wave reflected
-by a side, the rock acts as unbounded.
+Valid for continuous forces, in undamped rock without joints and openings, with any conditions at
+the sides: the rock acts as unbounded up to `known_until`, when the first P wave reflected from a
+side reaches a receiver.
 """
 
 from dataclasses import replace
@@ -23,13 +24,14 @@ from jointwave.compare.exact.rock_mass.conditions import holds, prestress_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
-#: Pieces of a Ricker wavelet, each smooth enough for the points of one integral.
+#: Pieces of a Ricker wavelet, each smooth enough for the points of one quadrature.
 PARTS = 8
 IN_PLANE = "is for a rock mass in space, not for one in the plane"
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether only forces act on rock without joints, and reach a receiver before echoes."""
+    """Return whether only forces act on rock without joints, and act on a receiver before
+    echoes."""
     answer = holds(
         scene,
         ("no waves", "loads", "openings", "prestress"),
@@ -75,7 +77,7 @@ def solve(scene: RockMass) -> xr.Dataset:
 
 
 def known_until(scene: RockMass) -> float:
-    """Return the earliest arrival of a side's reflection at a receiver, by its mirror image, s."""
+    """Return the earliest arrival of a side's reflection at a receiver, from mirror images, s."""
     shape, points, first = shape_of(scene.domain), np.array(scene.record.points), np.inf
     for corners, normal in (face for side in shape.normals() for face in shape.faces_of(side)):
         for load in scene.loads:
@@ -95,7 +97,7 @@ def _jumps(history: LoadHistory) -> bool:
 
 
 def _breaks(history: Sine | Ricker | Gabor | Recorded) -> list[float]:
-    """Return times between which a history is smooth, half a cycle or less."""
+    """Return times between which a history is smooth, at most half a cycle apart."""
     if isinstance(history, Recorded):
         return history.breaks
     if isinstance(history, Sine):

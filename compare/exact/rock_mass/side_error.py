@@ -1,10 +1,10 @@
 """Error of the incident field at the quiet sides of a scene, and its reach into the rock.
 
-The field (`field.field_of`) is that of joints that stay linear. What they do otherwise beside a
-side changes the true motion there, by about as much as the traction beyond their strength moves
-rock; the side holds the rock to the field instead, and this error enters the domain as a wave.
-Sides that all waves meet at normal incidence are exact whatever happens between them, since their
-dashpots absorb all that comes back.
+The field (`field.field_of`) assumes joints that stay linear. Joints near a side that fail or
+stiffen change the true motion there, by about the motion that the traction beyond their strength
+causes. The side still prescribes the field, so the difference enters the domain as a wave. Sides
+that all waves meet at normal incidence are exact in any case, since their dashpots absorb
+everything that comes back.
 """
 
 from collections.abc import Iterator
@@ -34,16 +34,16 @@ from jointwave.compare.exact.rock_mass.effective_medium import medium_field
 from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
 from jointwave.compare.exact.rock_mass.stack_waves import on_face
 
-BESIDE = 0.5  # wavelengths of P from a quiet side, within which it disturbs the waves of a load
-LEAST = 0.01  # of the wave: less is not said
-SAMPLES = 2000  # times at which tractions are looked at, at most
-IN_A_PERIOD = 40  # of them, at least
+BESIDE = 0.5  # P wavelengths from a quiet side within which it disturbs the waves of a load
+LEAST = 0.01  # error relative to the wave below which nothing is reported
+SAMPLES = 2000  # most times at which tractions are evaluated
+IN_A_PERIOD = 40  # least number of them per period
 
 
 class SideError(NamedTuple):
-    """An error of quiet sides: its cause; the part of the incident wave that it is there, at most;
-    a wavelength of P, m, at which less than half of it is left; the receivers that are nearer, by
-    key of [record]."""
+    """An error of quiet sides: its cause; its largest part of the incident wave there; the P
+    wavelength, m, at which less than half of it is left; and nearer receivers, by key of
+    [record]."""
 
     cause: str
     part: float
@@ -52,7 +52,7 @@ class SideError(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The error in a line."""
+        """The error in one line."""
         places = [at for some in self.near.values() for at in some]
         nearer = f"; nearer: {_first(places)}" if places else ""
         return (
@@ -68,8 +68,8 @@ def _first(places: list[tuple[float, ...]]) -> str:
 
 
 def beside_loads(scene: RockMass) -> Iterator[str]:
-    """Yield which receivers feel what quiet sides send back of a load's waves that meet them at an
-    angle, before the end: from a side they come as from the image of the load."""
+    """Yield the receivers that a load's waves, reflected at an angle from quiet sides, reach before
+    the end: reflections come as from the load's mirror image."""
     shape, plane, speed = shape_of(scene.domain), plane_waves(scene) or {}, fastest(scene)
     faces = [x for side in scene.boundaries.sides("quiet") for x in shape.faces_of(side)]
     for key, load in scene.entries("loads"):
@@ -90,8 +90,8 @@ def beside_loads(scene: RockMass) -> Iterator[str]:
 
 
 def side_error(scene: RockMass) -> SideError | None:
-    """Return the largest error of the quiet sides of a scene that receivers feel; None where it is
-    below LEAST or reaches no receiver in time."""
+    """Return the largest error of a scene's quiet sides that receivers feel; None if it is below
+    LEAST or reaches no receiver in time."""
     faces = _oblique(scene) if scene.waves else []
     if not faces or normal_incidence.applies(scene):
         return None
@@ -114,7 +114,7 @@ def side_error(scene: RockMass) -> SideError | None:
 
 
 def _oblique(scene: RockMass) -> list[Face]:
-    """Return the faces of quiet sides but of those that all waves meet at normal incidence."""
+    """Return the faces of quiet sides, except those that all waves meet at normal incidence."""
     shape, found = shape_of(scene.domain), []
     planes = normals_of(planes_of(scene))
     for side in scene.boundaries.sides("quiet"):
@@ -126,7 +126,7 @@ def _oblique(scene: RockMass) -> list[Face]:
 
 
 def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
-    """Yield what the field leaves out, and the part of the wave that it may be."""
+    """Yield the effects that the field leaves out, as the largest part of the wave and a cause."""
     planes = planes_of(scene)
     quiet = {side: "quiet" for side in scene.boundaries.sides("periodic")}
     closed = scene.model_copy(update={"boundaries": scene.boundaries.model_copy(update=quiet)})
@@ -152,8 +152,8 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
 
 
 def _sent_back(scene: RockMass, one: JointSet) -> float:
-    """Return the largest part of a wave that a joint of a set sends back at its dominant frequency,
-    at normal incidence: x / sqrt(1 + x^2), x = omega Z / 2 K."""
+    """Return the largest part of a wave reflected by a joint of a set at its dominant frequency, at
+    normal incidence: x / sqrt(1 + x^2), x = omega Z / 2 K."""
     most = 0.0
     for wave in scene.waves:
         incident, K = plane_wave(scene, wave), one.normal_stiffness
@@ -165,8 +165,8 @@ def _sent_back(scene: RockMass, one: JointSet) -> float:
 
 
 def _left_on_face(scene: RockMass) -> float:
-    """Return the motion that the traction is which the waves of a medium leave on a free side, over
-    the velocity of the wave."""
+    """Return the motion caused by the traction that the waves of a medium leave on a free side,
+    over the velocity of the wave."""
     face, most = free_face(scene), 0.0
     if face is None:
         return most
@@ -178,7 +178,7 @@ def _left_on_face(scene: RockMass) -> float:
 
 
 def _damped(scene: RockMass) -> float:
-    """Return the part of a wave that damping in the rock takes as it crosses the domain."""
+    """Return the part of a wave that the rock's damping absorbs across the domain."""
     alpha, beta = scene.damping.alpha or 0.0, 0.0
     if scene.damping.rayleigh is not None:
         beta = scene.damping.rayleigh.coefficients[1]
@@ -191,8 +191,8 @@ def _damped(scene: RockMass) -> float:
 
 
 def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
-    """Yield for each joint set the motion that the tractions of the field beyond its strength would
-    be, over the velocity of the wave, and what it sends back less as it closes."""
+    """Yield for each joint set the motion caused by tractions beyond its strength, over the
+    velocity of the wave, and the change of its reflection as it closes."""
     sets = [one for one in scene.joint_sets if not linear_law(one)]
     if not sets:
         return
@@ -224,9 +224,9 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
 
 
 def _moved(wave: PlaneWave, normal: np.ndarray) -> float:
-    """Return the velocity that a traction on a joint gives the rock beside it at most, m/s/Pa: the
-    largest singular value of V A^-1, V and A the velocities and tractions of unit P and SV waves
-    whose fronts follow a wave along the joint; in space also of SH waves, 1 / (Z_s cos phi)."""
+    """Return the largest velocity caused by a traction on a joint, m/s/Pa: the largest singular
+    value of V A^-1, V and A the velocities and tractions of unit P and SV waves with the wave's
+    slowness along the joint; in space at least that of SH waves, 1 / (Z_s cos phi)."""
     across = wave.direction - (wave.direction @ normal) * normal
     slowness = float(np.linalg.norm(across)) / wave.speed
     w = face(wave.rock, slowness)
@@ -239,8 +239,8 @@ def _moved(wave: PlaneWave, normal: np.ndarray) -> float:
 
 
 def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[float, float]:
-    """Return by how much normal and shear traction exceed the strength of a joint, Pa: what it
-    keeps after it has failed."""
+    """Return by how much normal and shear traction exceed a joint's residual strength, Pa, 0
+    without failure."""
     opens = slides = 0.0
     if one.tension is False or one.tensile_strength is not None:
         strength, pulled = one.tensile_strength or 0.0, float(-pressed.min())

@@ -1,8 +1,8 @@
 """The parallel joints of a scene as a stack of unbounded joints, and the conditions for that.
 
-Valid for undamped rock with linear joints, boundaries of regions and a free face, all parallel and
+Valid for undamped rock with linear joints, region boundaries and a free face, all parallel and
 continuous, in a convex domain with other sides through which waves leave, from rest: at t = 0 no
-pulse may have met a joint there.
+pulse may have met a joint in the domain.
 """
 
 from dataclasses import dataclass
@@ -36,14 +36,14 @@ from jointwave.compare.exact.rock_mass.conditions import (
 )
 from jointwave.compare.solvers.record import Answer
 
-BEGUN = 1e-6  #: of the duration: tolerated time for which a pulse has met a joint at t = 0
-FAINT = 1e-12  #: part of an S wave in or across its plane of incidence that counts as none
+BEGUN = 1e-6  #: tolerated time since a pulse met a joint at t = 0, over the duration
+FAINT = 1e-12  #: part of an S wave in or across its plane of incidence that is neglected
 
 
 @dataclass(frozen=True)
 class JointStack:
-    """Parallel joints in rock; welded boundaries of its regions are joints of infinite stiffness, a
-    free face is one without stiffness.
+    """Parallel joints in rock; welded region boundaries are joints of infinite stiffness, a free
+    face is a joint of zero stiffness.
 
     rocks : of the layers, along the normal [N + 1]. normal : unit vector across the joints [d].
     offsets : of the joints along the normal from the origin, ascending, m, [N]. joints : [N].
@@ -58,8 +58,8 @@ class JointStack:
     has_face: bool = False
 
     def met_by(self, wave: PlaneWave) -> list[PulseStack]:
-        """Return the joints in the order in which a wave meets them, from its point `through`: for
-        an S wave in space both parts, in its plane of incidence and across it."""
+        """Return the joints in the order in which a wave meets them, from its point `through`; for
+        an S wave in space one stack each for its parts in the plane of incidence and across it."""
         along_travel = abs(wave.direction @ wave.polarisation) > 0.5
         kinds = ("P",) if along_travel else ("SV", *ACROSS)[: len(self.normal) - 1]
         offsets = self.offsets - wave.through @ self.normal
@@ -72,8 +72,8 @@ class JointStack:
 
 
 def stack_of(scene: RockMass) -> JointStack:
-    """Return the stack of a scene whose joints are parallel, with a free face along them: of joints
-    that are not linear, as they are in the initial stress."""
+    """Return the stack of a scene with parallel joints and any free face parallel to them; joints
+    that are not linear have their stiffness under the initial stress."""
     blocks, face = blocks_of_scene(scene), free_face(scene)
     normal = next(iter(normals_of(scene)), None)
     if normal is None:
@@ -110,14 +110,14 @@ def stack_of(scene: RockMass) -> JointStack:
 
 
 def _joint(one: JointSet, eta: float, stress: np.ndarray) -> Joint:
-    """Return a joint as small waves meet it under a stress [d, d], Pa; eta : of dashpots, s."""
+    """Return a joint for small waves under a stress [d, d], Pa; eta : of its dashpots, s."""
     K_n, K_s = one.normal_stiffness or 0.0, one.shear_stiffness or 0.0
     return Joint(closed_stiffness(one, stress), K_s, K_n * eta, K_s * eta)
 
 
 def scatters(scene: RockMass, leaves: bool = True) -> Answer:
-    """Return whether the incident waves and the joints form the field of a stack; other loads and
-    openings add to it. leaves : whether waves must leave through the sides."""
+    """Return whether incident waves and joints form the field of a stack, to which other loads and
+    openings add. leaves : whether waves must leave through the sides."""
     normals, face = normals_of(scene), free_face(scene)
     if normals and face is not None and not along(face.normal, normals[0]):
         face = None
@@ -142,7 +142,7 @@ def scatters(scene: RockMass, leaves: bool = True) -> Answer:
 
 
 def _decays(scene: RockMass, wave: Wave) -> bool:
-    """Return whether a wave scattered at parallel boundaries decays away from them."""
+    """Return whether a wave scattered at parallel boundaries is evanescent in some layer."""
     incident, n = plane_wave(scene, wave), normals_of(scene)[0]
     across = float(incident.direction @ n)
     slowness = np.linalg.norm(incident.direction - across * n) / incident.speed
@@ -150,7 +150,7 @@ def _decays(scene: RockMass, wave: Wave) -> bool:
 
 
 def begins_before(scene: RockMass, stack: JointStack) -> Answer:
-    """Return whether no pulse has met a joint of the domain before the start, or which one has."""
+    """Return whether no pulse has met a joint in the domain before the start, or which one has."""
     for i, wave in enumerate(scene.waves):
         incident = plane_wave(scene, wave)
         late = first_scattered(stack, incident)
@@ -167,9 +167,9 @@ def begins_before(scene: RockMass, stack: JointStack) -> Answer:
 def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     """Return the first arrival of a reflected or transmitted wave in the domain, s.
 
-    With the slowness p along the joints and q across them it is p x + q d + min(q_p, q_s) |z - d|
-    there, d the first joint's depth. An evanescent wave has no arrival and counts from the joint at
-    which it is generated.
+    With the slownesses p along the joints and q across them, and the first joint's depth d, it is p
+    x + q d + min(q_p, q_s) |z - d|. An evanescent wave has no arrival time; it counts from the
+    joint that generates it.
     """
     n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
     across = float(wave.direction @ n)

@@ -1,11 +1,11 @@
-"""Scenes of plane P and S waves at one joint, or parallel ones, at any angle, at their receivers
-(`plane.oblique_joint`, `plane.parallel_joints`).
+"""Scenes of plane P and S waves at one or several parallel joints, at any angle, as records of
+receivers (`plane.oblique_joint`, `plane.parallel_joints`).
 
-Displacement is the same solution of the pulse's time integral; the opening and the slip of a joint
-are the jumps of displacement across it, and a point on a joint reads the mean of both sides. Where
-P waves are evanescent the motion begins before its cause: its part at t = 0 is not in the scene,
-which begins at rest, and is added to the error bound. In space an S wave is the sum of its parts in
-and across its plane of incidence, SV and SH.
+Displacement is the same solution for the pulse's time integral; opening and slip of a joint are the
+jumps of displacement across it, and a point on a joint reads the mean of both sides. With
+evanescent P waves the motion begins before its cause: its value at t = 0 is not in the scene, which
+begins at rest, and is added to the error bound. In space an S wave is the sum of its parts in and
+across its plane of incidence, SV and SH.
 
 Valid for parallel linear joints, with dashpots or without, in undamped rock with sides through
 which waves leave, and any number of plane waves that meet them after the start (`stack`).
@@ -40,15 +40,15 @@ DISTANCES = {
         "continuum-equivalent": "joints smeared over the rock",
     },
 }
-BESIDE = 1e-13  #: relative to the domain's size: far above round-off, far below any wavelength
+BESIDE = 1e-13  #: distance from a joint that counts as off it, over the domain's size
 
 
-#: Of (scene, stack, places [m, d] (m), times (s)).
+#: Function of (scene, stack, places [m, d] (m), times (s)).
 Motion = Callable[["RockMass", JointStack, np.ndarray, np.ndarray], PlaneMotion]
 
 
 def holds(scene: RockMass, one: bool) -> Answer:
-    """Return whether a scene has plane waves at one joint or, if not `one`, at several."""
+    """Return whether a scene has plane waves at one joint or, unless `one`, at several planes."""
     held = ("waves", "prestress", "regions", "damped joints")
     answer = conditions.holds(scene, held) and scatters(scene)
     if not answer:
@@ -65,7 +65,7 @@ def holds(scene: RockMass, one: bool) -> Answer:
 
 
 def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Dataset:
-    """Return the records of a scene's receivers; motion : in place of `motion_at`."""
+    """Return the records of a scene's receivers; motion : replaces `motion_at`."""
     stack, times, frame = stack_of(scene), sample_times(scene), frame_of(scene)
     joints = joint_receivers(scene, stack)
     points, on_joint, beyond = point_receivers(scene, stack)
@@ -129,8 +129,8 @@ def motion_at(
 def point_receivers(
     scene: RockMass, stack: JointStack
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the points of a scene [m, d], those on a joint or a face moved into the first of their
-    blocks, which are on a joint [m], and where those are on its other side."""
+    """Return the points of a scene [m, d], those on a joint or face shifted into their first block;
+    whether each is on a joint [m]; and the counterparts of these on the other side."""
     points = np.array(scene.record.points, dtype=float).reshape(-1, len(stack.normal))
     if not len(points):
         return points, np.zeros(0, dtype=bool), points
@@ -146,7 +146,7 @@ def point_receivers(
 
 
 def joint_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
-    """Return the places given by a scene [m, d] (m), each in the plane of the joint next to it."""
+    """Return a scene's joint receivers [m, d] (m), projected onto the nearest joint."""
     asked = np.array(scene.record.joints, dtype=float).reshape(-1, len(stack.normal))
     if not len(asked):
         return asked
@@ -156,9 +156,9 @@ def joint_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
 
 
 def frame_of(scene: RockMass) -> np.ndarray:
-    """Return the axes of the joints of a scene [d, d] as its records have them: the normal, and in
-    the plane its left, in space the strike and the line of dip of the one that points upwards, or
-    else to the north or the east."""
+    """Return the axes of the joints' records [d, d]: the normal, and in the plane the normal
+    rotated to the left; in space the normal that points up (else north or east), strike and dip
+    line."""
     n = next(iter(normals_of(scene)), np.eye(scene.domain.dimension)[-1])
     if not scene.in_space:
         return np.array([n, [-n[1], n[0]]])
@@ -167,12 +167,13 @@ def frame_of(scene: RockMass) -> np.ndarray:
 
 
 def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the tractions [m, d, n] of stresses [m, components, n] on a face of a unit normal."""
+    """Return the tractions [m, d, n] on a plane with unit normal from stresses [m, components,
+    n]."""
     return np.einsum("mijn,j->min", stress[:, COMPONENT[len(normal)]], normal)
 
 
 def _beside(stack: JointStack) -> float:
-    """Return the distance of a place beside a joint from it, m."""
+    """Return the offset from a joint of places beside it, m."""
     return BESIDE * float(np.linalg.norm(np.ptp(stack.blocks.body.vertices, axis=0)))
 
 
