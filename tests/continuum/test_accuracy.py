@@ -21,8 +21,8 @@ RICKER = {"load": {"shape": "ricker", "amplitude": 1e6, "period": 0.01}, "time__
         ("equivalent", {"ends__end": "quiet"}),
         ("equivalent", {"ends__end": "fixed"}),
         ("jointed", {}),
-        ("jointed", {**DAMPED, **LAYER, "ends__end": "fixed"}),
-        ("jointed", {**DAMPED, "ends__start": "matched", "ends__end": "matched"}),
+        ("jointed", {**DAMPED, **LAYER, "ends__start": "matched", "ends__end": "fixed"}),
+        ("jointed", {**DAMPED, **LAYER, "ends__start": "matched", "ends__end": "matched"}),
         ("jointed", {"ends__end": "quiet"}),
     ],
 )

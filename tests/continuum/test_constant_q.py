@@ -31,6 +31,7 @@ slow = pytest.mark.slow
 SPEED = np.sqrt(2.0)  # of the bar of `stack`
 Q = {"rock__quality_factor": 10.0}
 LAYER = {"y": 5.0, "spacing_stiffness": 4.375e8}
+DAMPED_LAYER = LAYER | {"y": 8.0, "damping_ratio": 1e-3}
 BAR = {"y": [4.0, 6.0], "joints": False, "intact_modulus": 2e11}
 
 
@@ -156,12 +157,12 @@ IMPLICIT = [
     ("model", "changes", "numerics"),
     [
         pytest.param("jointed", {"joints__damping_ratio": 0.02}, EXPLICIT[:2], marks=slow),
-        ("equivalent", {"soft_layers": [LAYER]}, EXPLICIT[:2]),
+        ("equivalent", {"soft_layers": [LAYER, DAMPED_LAYER]}, EXPLICIT[:2]),
         ("jointed", {"segments": [BAR], "joints__damping_ratio": 0.01}, EXPLICIT[:2]),
         ("jointed", {}, IMPLICIT),
         ("equivalent", {}, IMPLICIT),
     ],
-    ids=["joints damped apart", "a soft layer", "segments", "implicit", "implicit, homogenised"],
+    ids=["joints damped apart", "soft layers", "segments", "implicit", "implicit, homogenised"],
 )
 def test_waves_come_to_the_exact_ones_at_second_order(pillar, model, changes, numerics):
     """Elements of order 4 leave the error of the steps alone."""

@@ -26,7 +26,7 @@ UNDAMPED = {"joints__damping_ratio": None, "ends": {"start": "free", "end": "fre
 MOTIONS = {
     "axial": {},
     "breaking": UNDAMPED | {"joints__tensile_strength": 1e5, "joints__fracture_energy": 5.0},
-    "small rotation": OBLIQUE,
+    "small rotation": OBLIQUE | {"damping__mass_proportional": 50.0},
     "finite rotation": OBLIQUE | LOOSE | UNDAMPED | {"motion__rotation": "finite"},
 }
 

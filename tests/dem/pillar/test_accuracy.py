@@ -38,7 +38,10 @@ BLOW = {"shape": "ricker", "amplitude": 1e5, "period": 0.01, "direction": [0.48,
 BASE = {**BLOW, "amplitude": 1.0, "quantity": "velocity"}
 ECCENTRIC = {"load": {**BLOW, "at": [0.1, -0.05]}, "joints__damping_ratio": 0.05}
 ROWS = {
-    "matched, fixed": {"ends": {"start": "matched", "end": "fixed"}},
+    "matched, fixed, mass damping": {
+        "ends": {"start": "matched", "end": "fixed"},
+        "damping__mass_proportional": 50.0,
+    },
     "shaken base, quiet": {
         "motion__rotation": "none",
         "joints__damping_ratio": None,

@@ -6,6 +6,7 @@ import pytest
 from jointwave import dem
 
 COMPRESSION = {"load": {"shape": "step", "amplitude": 1e6}, "time__duration": 0.03}
+COMPRESSION |= {"ends__end": "fixed"}
 IDLE = {
     "dashpots of zero": ("pillar", {"joints__damping_ratio": 0.0}),
     "tension never asked": ("pillar", {"joints__tension": False}),
