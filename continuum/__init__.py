@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from jointwave.continuum.space.rock import Forms, anisotropic, elastic, isotropic
     from jointwave.continuum.xdmf import write_xdmf
 
-#: What needs dolfinx, which is imported when it is first asked for, and where it is.
+#: The module of each name that needs dolfinx; it is imported at the first access.
 MODULES = dict.fromkeys(("Forms", "anisotropic", "elastic", "isotropic"), "space.rock")
 MODULES |= {"simulate": "run", "write_xdmf": "xdmf"}
 __all__ = ["Forms", "anisotropic", "applies", "elastic", "isotropic", "simulate", "write_xdmf"]
 
 
 def __getattr__(name: str) -> Any:
-    """Return a function that needs dolfinx."""
+    """Import and return a name that needs dolfinx."""
     if name not in MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{MODULES[name]}"), name)

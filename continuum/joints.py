@@ -9,19 +9,19 @@ from jointwave.cases.material.closure import stress_in_reach
 from jointwave.cases.schema.scene import Scene
 from jointwave.joints.shear import UNLIMITED
 
-#: Of an ordinary joint's compliance: what a layer takes out of the homogenised rock that differs
-#: from it in strength alone.
+#: Part of an ordinary joint's compliance that a soft layer which differs in strength only takes out
+#: of the homogenised rock.
 SHARE = 0.1
-LEAST = 1e-300  # m/Pa: above zero
+LEAST = 1e-300  # m/Pa: above zero, for divisions
 
 
 class Resolved(NamedTuple):
-    """The joints that a model resolves, by their number in the pillar.
+    """The joints that a model resolves; arrays except `number` are for all joints of the pillar.
 
-    number : int array [n]. stiffness, shear_stiffness : [pillar's joints], Pa/m. time_constant :
-    eta of theirs, s; None without dashpots. less : compliance of those that stiffen that the rock
-    has already, m/Pa. share : of an ordinary joint's compliance, which the homogenised rock beside
-    a layer loses to it. Both [pillar's joints].
+    number : of the resolved joints [n]. stiffness, shear_stiffness : Pa/m. time_constant : eta, s;
+    None without dashpots. less : of joints that stiffen, the compliance that the rock includes,
+    m/Pa. share : part of an ordinary joint's compliance that the homogenised rock beside a soft
+    layer loses to it.
     """
 
     number: np.ndarray
@@ -33,18 +33,18 @@ class Resolved(NamedTuple):
 
 
 def layers_of(scene: Scene) -> dict[int, float]:
-    """Return the thickness (m) of the joints of a pillar that are layers of rock, in order."""
+    """Return the thickness (m) of the joints of a pillar that are meshed layers, in order."""
     found = zip(calibrate(scene).soft.tolist(), scene.soft_layers, strict=True)
     return dict(sorted((joint, one.thickness) for joint, one in found if one.thickness is not None))
 
 
 def resolved_joints(scene: Scene, model: str, shears: bool, loses: bool = True) -> Resolved:
-    """Return all joints ("jointed"), or the soft layers by their excess ("equivalent"), and what
-    the rock beside them loses to those that are meshed or can fail, and to those that can be
-    stiffer than ordinary joints.
+    """Return all joints ("jointed"), or the soft layers with their excess compliance
+    ("equivalent"). Homogenised rock gives compliance to layers that are meshed, can fail, or can
+    become stiffer than ordinary joints.
 
-    shears : whether the motion has components along the joints. loses : whether rock can: it is of
-    the scene, in a mesh of its blocks.
+    shears : whether the motion has components along the joints. loses : whether the rock can give
+    compliance: not the rock of a script or in a mesh from a file.
     """
     p, meshed = calibrate(scene), list(layers_of(scene))
     less, share = np.zeros((2, p.block_count - 1))
@@ -62,7 +62,7 @@ def resolved_joints(scene: Scene, model: str, shears: bool, loses: bool = True) 
         closes, of = _closing(scene, excess[0] + ordinary[0])
         less[closes] = np.minimum(of, ordinary[0, closes])
         share[closes] = 1 - less[closes] / np.maximum(ordinary[0, closes], LEAST)
-    # Where the rock loses nothing, a joint makes it softer by that share of an ordinary one.
+    # A joint without any compliance of its own softens the rock by SHARE of an ordinary joint.
     least = SHARE / np.stack(np.broadcast_arrays(p.regular, p.regular_shear_stiffness))
     own = np.where(excess + share * ordinary == 0, least, excess + share * ordinary)
     normal, shear = 1 / own
@@ -73,8 +73,8 @@ def resolved_joints(scene: Scene, model: str, shears: bool, loses: bool = True) 
 
 
 def _closing(scene: Scene, compliance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which joints of these compliances (m/Pa) stiffen, int array [n], and half of what is
-    left of that under the stress in reach [n], m/Pa."""
+    """Return the joints that stiffen [n], and half of their compliance under the stress in reach
+    [n], m/Pa; compliance : initial, of all joints, m/Pa."""
     most = calibrate(scene).maximum_closure
     if most is None:
         return np.zeros(0, int), np.zeros(0)

@@ -1,4 +1,4 @@
-"""The monitor of a run, which stops it where speeds, energy or motion exceed their bounds."""
+"""The monitor of a run: stops it if speeds, energy or motion exceed their bounds."""
 
 import numpy as np
 
@@ -19,19 +19,16 @@ from jointwave.numerics.small_motion import (
     refuse_large_motion,
 )
 
-IN_PERIOD = 50  # forces that are looked at in the period of a pulse, at least
+IN_PERIOD = 50  # least number of samples of forces in the period of a pulse
 
 
 class Monitor:
-    """Stops a run that exceeds its bounds.
-
-    guard : `numerics.divergence.Guard`, which changes with the run.
-    """
+    """Stops a run that exceeds its bounds; guard : `numerics.divergence.Guard` of the run."""
 
     def __init__(
         self, plan: Plan, steps: Leapfrog | Implicit, start: np.ndarray | None = None
     ) -> None:
-        """start : displacements at the start, m; None where at rest."""
+        """start : initial displacements [freedoms], m; None if zero."""
         self.found, _, choice, critical = plan
         self.scene, self.steps, self.time = plan.found.scene, steps, choice.time
         self.explicit = choice.scheme == "explicit"
@@ -41,9 +38,9 @@ class Monitor:
         self.guard = guard(self._highest_speed(start))
 
     def check(self, first: int, last: int) -> None:
-        """Raise StoppedError where a run leaves its bounds in samples first .. last - 1."""
+        """Raise StoppedError if a run leaves its bounds in samples first .. last - 1."""
         steps, body = self.steps, self.found.body
-        exact = self.scene.record.energy and self.explicit  # the ledger of implicit steps is not
+        exact = self.scene.record.energy and self.explicit  # implicit ledgers are not exact
         speed = np.abs(steps.v).reshape(-1, body.components).max(axis=1)
         energy = steps.samples.energy if exact else None
         check(self.guard, self.run, (first, last), energy, speed, body.x)
@@ -51,7 +48,7 @@ class Monitor:
         refuse_large_motion(self.scene, self.run.engine, self._moved, t, first)
 
     def _moved(self) -> Moved | None:
-        """Return the joint that has moved furthest over the size of its smaller block, or blocks
+        """Return the joint with the largest motion over the size of its smaller block, or blocks
         that overlap without a contact; None without joints."""
         u = self.steps.u
         found = farthest_joint(self.found, u)
@@ -62,16 +59,15 @@ class Monitor:
         return overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
 
     def _highest_speed(self, u: np.ndarray | None) -> float:
-        """Return a bound on the speed of any node, m/s; u : displacements at the start, m.
+        """Return a bound on the speed of any node, m/s; u : initial displacements, m.
 
-        Where forces F put energy in, d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and
-        m v^2 of any node at most 2 E.
+        d sqrt(2 E) / dt is at most |F| in the norm of 1 / m, and m v^2 of any node at most 2 E.
         """
         problem, time, mass = self.steps.problem, self.time, self.found.body.mass
         duration, pushed, shaken, weight, stored = time.dt * (time.steps + time.stride), *[0.0] * 4
         if problem.forces is not None:
             period, apart = shortest_period(self.scene.pulses), time.stride
-            if period is not None:  # no pulse is missed
+            if period is not None:  # often enough for the shortest pulse
                 apart = max(1, min(apart, int(period / (IN_PERIOD * time.dt))))
             pushed = problem.forces.impulse(mass, time.steps, apart)
         if problem.held.moved is not None:
@@ -87,9 +83,9 @@ class Monitor:
             return float(least * speed_that(pushed, shaken, duration * weight, stored, pressed))
 
     def _prestressed(self, pushing: float) -> float:
-        """Return the root of twice the energy (sqrt(J)) that a prestress keeps in rock and joints,
-        and that rock gives off by pushing on both sides of joints that open, so long
-        (s/sqrt(kg))."""
+        """Return the root of twice the energy (sqrt(J)) that a prestress stores in rock and joints,
+        plus what prestressed rock can add by pushing on both sides of joints that open; pushing :
+        duration over the root of the smallest mass, s/sqrt(kg)."""
         problem = self.steps.problem
         stress, joints, law = problem.stress, problem.body.joints, problem.law
         if stress is None:
@@ -106,9 +102,8 @@ class Monitor:
 
 
 def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
-    """Return where a joint has moved furthest over the size of its smaller block, under
-    displacements u [freedoms] (m); along the axis of a pillar faces may part by any distance. None
-    without such a joint."""
+    """Return the joint with the largest motion over the size of its smaller block under
+    displacements u [freedoms], m; of a pillar only slip counts. None without such a joint."""
     body, scene, joints = found.body, found.scene, found.body.joints
     if not joints.weight.size:
         return None
@@ -127,8 +122,8 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
 
 
 def motion_of_blocks(found: SceneBody, u: np.ndarray) -> np.ndarray:
-    """Return displacement (m) and rotation of each block in the plane [n, 3], those of a rigid
-    block that are nearest to the displacements u [freedoms] of its nodes."""
+    """Return displacement (m) and rotation (rad) of each block in the plane [n, 3]: the rigid
+    motion nearest to the displacements u [freedoms] of its nodes."""
     nodes, count = nodes_of_cells(found.body), found.blocks.count
     block = np.repeat(found.body.block, nodes.shape[1])
 

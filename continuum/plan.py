@@ -1,4 +1,4 @@
-"""A run before its first step: the body of a scene, what acts on it, and how it is stepped."""
+"""The plan of a run: the body of a scene, constant loads and boundaries, and the time steps."""
 
 import logging
 from collections.abc import Iterator
@@ -26,17 +26,17 @@ from jointwave.continuum.stepping.scaling import scaled_mass
 from jointwave.continuum.validity import refuse
 
 log = logging.getLogger("jointwave")
-STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to be looked into
-#: Entries that a step takes in a second: of products, and of triangular factors.
+STEPS_PER_IMPLICIT = 20  # explicit steps that one implicit step must replace to be considered
+#: Matrix entries a second in products, and in triangular solves.
 PRODUCT_RATE, FACTOR_RATE = 1e9, 3e8
-#: Operations a second of a factorisation, and what an implicit step costs besides, s.
+#: Operations a second of a factorisation, and the overhead of an implicit step, s.
 FACTORISATION_RATE, OVERHEAD = 1e9, 1e-3
-STIFFER = 1.2  # times: of linear elements that are worth a line
+STIFFER = 1.2  # stiffness of linear elements, over the exact one, from which to warn
 ITERATIONS = 3  # of Newton's method where joints open, slide or break
 
 
 class Choice(NamedTuple):
-    """How a scene is stepped: "explicit" or "implicit", its clock, and the reason in a phrase."""
+    """The time steps of a scene: "explicit" or "implicit", clock, and the reason in a phrase."""
 
     scheme: str
     time: Clock
@@ -44,10 +44,10 @@ class Choice(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """A run before its first step.
+    """The plan of a run.
 
-    found : the scene as a body. problem : the body and what acts on it all the time. choice : how
-    it is stepped. critical : the critical step of explicit steps, s.
+    found : the scene as a body. problem : the body with its constant loads and boundaries. choice :
+    the time steps. critical : critical step of explicit steps, s.
     """
 
     found: SceneBody
@@ -63,7 +63,7 @@ def plan_of(
     dim: int | None = None,
     comm: Any = None,
 ) -> Plan:
-    """Return the run of a scene; arguments and errors as of `continuum.run.simulate`."""
+    """Return the plan of a run; arguments and errors as in `continuum.run.simulate`."""
     refuse(scene, model, dim)
     found = body_of(scene, model, rock, dim)
     if found.scripted or scene.mesh_path is not None:
@@ -99,7 +99,7 @@ def plan_of(
 
 
 def of_stiff_elements(found: SceneBody) -> Iterator[str]:
-    """Say how many times too stiff linear elements are where blocks turn and pillars bend."""
+    """Warn of linear elements that are too stiff in scenes where blocks rotate or pillars bend."""
     scene, body = found.scene, found.body
     if scene.is_column:
         turns = is_spatial(scene) and scene.motion.rotation != "none" and not scene.mesh_path
@@ -119,7 +119,7 @@ def of_stiff_elements(found: SceneBody) -> Iterator[str]:
 
 
 def _of_joints(found: SceneBody) -> float:
-    """Return the second moments that joints have at their points, over those of their faces."""
+    """Return the second moments of the joints' points over those of their faces."""
     faces, joints = found.blocks.contacts, found.body.joints
     exact = np.trace(faces.second_moment, axis1=1, axis2=2)
     inner = joints.column < len(exact)  # not across periodic sides
@@ -129,7 +129,7 @@ def _of_joints(found: SceneBody) -> float:
 
 
 def _of_bending(body: Body, side: float) -> float:
-    """Return the stiffness of a pillar's rock as it bends, its width held, over that of a beam."""
+    """Return the bending stiffness of a pillar's rock at constant width, over that of a beam."""
     x, across, along = body.x, np.zeros_like(body.x), np.zeros_like(body.x)
     along[:, 1], across[:, 1], across[:, 0] = x[:, 1], x[:, 0] * x[:, 1], -(x[:, 1] ** 2) / 2
     bent, longer = (u.ravel() @ (body.stiffness @ u.ravel()) for u in (across, along))
@@ -137,10 +137,10 @@ def _of_bending(body: Body, side: float) -> float:
 
 
 def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:
-    """Return the scheme of a scene, of "auto" the faster one by operation counts; critical : the
-    critical step of explicit steps, s.
+    """Return the time steps of a scene, for "auto" the faster scheme by operation counts; critical
+    : critical step of explicit steps, s.
 
-    Raises SceneError for a step that cannot be taken.
+    Raises SceneError for an unstable step or too many steps.
     """
     numerics = scene.numerics.continuum
 
@@ -180,8 +180,8 @@ def _implicit(scene: AnyScene) -> Clock:
 
 
 def _implicit_seconds(stiffness: csr_matrix, bends: bool, steps: int) -> float:
-    """Return a guess of the seconds of implicit steps, whose triangular factors fill the envelope
-    of a narrow numbering."""
+    """Return an estimate of the time of implicit steps, s, with triangular factors that fill the
+    envelope of a narrow numbering."""
     order = reverse_cuthill_mckee(stiffness, symmetric_mode=True)
     narrow = stiffness[order][:, order].tocoo()
     reach = np.zeros(stiffness.shape[0], dtype=np.int64)

@@ -1,4 +1,4 @@
-"""From a scene to a body and what acts on it."""
+"""From a scene to a `Problem`: a body with its joint law, loads, boundaries and receivers."""
 
 from typing import Any
 
@@ -25,8 +25,8 @@ from jointwave.joints.law import Law, law, stiffest, uniform
 
 
 def with_law(found: SceneBody) -> tuple[Body, Law | None]:
-    """Return a body with the law of its joints, a column for each contact of a rock mass and for
-    each joint of a pillar that is resolved; None without joints."""
+    """Return a body and the law of its joints (None without), with a column for each contact of a
+    rock mass or each resolved joint of a pillar."""
     scene, body, joints = found.scene, found.body, found.body.joints
     if not len(joints.weight):
         return body, None
@@ -41,7 +41,7 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
         less = resolved.less[which]
     else:
         sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
-        which = np.clip(which, 0, len(sets) - 1)  # cuts through rock are no joints
+        which = np.clip(which, 0, len(sets) - 1)  # any law: cuts through rock are no joints
         stiffness = [[one.normal_stiffness, one.shear_stiffness] for one in sets]
         normal, shear = np.array(stiffness, dtype=float).T
         etas, tension = set_time_constants(scene), np.array([i.tension is not False for i in sets])
@@ -54,10 +54,10 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
 
 
 def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
-    """Return the body of a scene and what acts on it all the time.
+    """Return a scene as a problem, without loads that have a history.
 
-    Masses, forces and energies of a pillar in one and two dimensions are per unit area or
-    thickness; `receivers.sections.extent_of` turns them into those of the pillar.
+    Masses, forces and energies of a pillar in one or two dimensions are per unit area or thickness;
+    `receivers.sections.extent_of` gives the factor.
     """
     (body, own), stress, other = with_law(found), None, None
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]
@@ -85,8 +85,8 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
 def in_time(
     scene: AnyScene, problem: Problem, time: Clock, incident: IncidentField | None
 ) -> Problem:
-    """Return a problem with forces and motion that have a history, for the steps of a clock;
-    incident : of the waves, in intact rock where absent."""
+    """Return a problem with the forces and base motion of a scene, for the steps of a clock;
+    incident : field of the waves; absent: that in unjointed rock."""
     body, forces = problem.body, None
     pushed, waves = pushes(scene, body), waves_of(scene, body, incident)
     if pushed or waves is not None:
@@ -95,16 +95,16 @@ def in_time(
 
 
 def at_rest(scene: AnyScene, problem: Problem) -> tuple[Problem, Rest | None, np.ndarray | None]:
-    """Return a problem on sides that bear its weight; the state at rest under gravity and around
-    what is excavated, None where it starts unstrained; and the forces (N) that begin to act at
-    t = 0, the weight and what bears it, None without."""
+    """Return the problem with the reactions of sides that bear its weight; the static state under
+    gravity or after excavation, or None; and the forces (N) that begin to act at t = 0, sudden
+    gravity and its reactions, or None."""
     gravity, body = scene.gravity, problem.body
     static, weight = gravity is not None and gravity.static, weight_of(scene, body)
     if weight is None and not scene.excavated:
         return problem, None, None
     hold = holding(problem, bearing_sides(scene, body))
     before, rest = problem, None
-    if weight is not None and not static:  # it acts later
+    if weight is not None and not static:  # the weight acts from t = 0 on
         before = problem._replace(steady=problem.steady - weight)
     if static or scene.excavated:
         rest = settled(scene, before, hold if static else None)

@@ -1,4 +1,4 @@
-"""From a scene to its result by the dolfinx body."""
+"""Simulation as deformable rock, from a scene to its result."""
 
 import json
 from collections.abc import Callable
@@ -25,8 +25,8 @@ from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
 
-FREEDOM_STEPS_AT_ONCE = 10_000_000  # some 0.1 s: often enough for a progress bar
-LEAST_CHUNKS = 20  # however short the run
+FREEDOM_STEPS_AT_ONCE = 10_000_000  # in some 0.1 s: often enough for a progress bar
+LEAST_CHUNKS = 20  # of any run
 
 
 def simulate(
@@ -43,21 +43,21 @@ def simulate(
 
     Parameters
     ----------
-    model : "jointed", every joint an interface, or "equivalent", joints with a spacing, and a
-        pillar's, in an effective medium.
-    rock : function of the scene and a dolfinx space that returns the rock as UFL forms, in place of
-        the scene's own; with unrelaxed moduli where the scene has a quality factor. Waves,
-        compliant bases and absorbing ends of a pillar are of the scene's rock, and refused then.
-    dim : of a pillar's mesh: 1, the bar; 2, plane stress; 3, the square column; absent: as the
-        scene asks for.
+    model : "jointed", every joint an interface, or "equivalent", with the joints of a pillar, or
+        joint sets with a spacing, in an effective medium.
+    rock : function of the scene and a dolfinx space that returns the rock as UFL forms, instead of
+        the scene's rock; with unrelaxed moduli where the scene has a quality factor. Waves,
+        compliant bases and absorbing ends of a pillar need the scene's rock and are refused then.
+    dim : of a pillar's mesh: 1, the bar; 2, plane stress; 3, the square column; absent: as in the
+        scene.
     progress : called with the finished fraction.
-    keeper : of checkpoints, `numerics.time_loop`.
-    incident : of the waves, as if the rock had no sides; absent: in rock without joints.
-    comm : mpi4py's communicator of processes that share the run: all call this alike, and all get
-        the whole result. keeper, progress : of each.
+    keeper : saves checkpoints, `numerics.time_loop.Checkpointer`.
+    incident : field of the waves in unbounded rock; absent: that in unjointed rock.
+    comm : mpi4py communicator of the processes that share the run; the call is collective, and all
+        processes get the whole result. keeper, progress : of each process.
 
-    Raises SceneError for what cannot be simulated; StoppedError, with the result so far, when the
-    motion leaves its bounds.
+    Raises SceneError for a scene that cannot be simulated; StoppedError, with the result so far,
+    when the motion leaves its bounds.
     """
     began, comm = perf_counter(), comm if comm is not None and comm.size > 1 else None
     plan = plan_of(scene, model, rock, dim, comm)
@@ -99,8 +99,7 @@ def simulate(
 def about_run(
     scene: AnyScene, plan: Plan, steps: Leapfrog | Implicit, rest: Rest | None
 ) -> dict[str, Any]:
-    """Return the attributes of a result about its run. All processes that share it call this
-    alike."""
+    """Return the attributes of a result about its run; collective over processes."""
     (_, _, choice, critical), body, comm = plan, steps.problem.body, steps.problem.comm
     about = {
         "scheme": choice.scheme,
@@ -124,8 +123,8 @@ def about_run(
 def stepper(
     scene: AnyScene, problem: Problem, choice: Choice, rest: Rest | None, sudden: np.ndarray | None
 ) -> Leapfrog | Implicit:
-    """Return the steps of a run, from a state at rest if there is one; sudden : forces (N) that
-    begin to act at t = 0."""
+    """Return the time stepper of a run, at its static state if there is one; sudden : forces (N)
+    that begin to act at t = 0."""
     given = problem, choice.time.dt, choice.time.samples
     steps: Leapfrog | Implicit
     if choice.scheme == "explicit":

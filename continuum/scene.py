@@ -36,9 +36,12 @@ from jointwave.continuum.validity import dimension_of
 
 
 class SceneBody(NamedTuple):
-    """A scene as a body: its resolved joint sets, blocks, contacts across periodic sides, its
-    materials, which of them each cell has, int array [cells], whether a script gave its rock, its
-    body, and the model of its joints."""
+    """A scene as a body.
+
+    scene : with its resolved joint sets only. across : contacts across periodic sides. of_cell :
+    index of each cell's material [cells]. scripted : whether a script gave the rock. model : of the
+    joints, "jointed" or "equivalent".
+    """
 
     scene: AnyScene
     blocks: Blocks
@@ -54,8 +57,8 @@ class SceneBody(NamedTuple):
         return np.array([getattr(one, name) for one in self.materials])[self.of_cell]
 
     def moduli(self, pairs: Iterable[tuple[int, int]]) -> np.ndarray:
-        """Return the components i, j of the stress by the gradient of the displacement in each
-        material [materials, n, components, d], Pa; in one dimension that along it."""
+        """Return the stress components i, j per displacement gradient in each material
+        [materials, n, components, d], Pa; in one dimension the axial stress only."""
         stiffness = np.array([one.stiffness for one in self.materials])
         if self.body.x.shape[1] > 1:
             full = np.array([tensor(one) for one in stiffness])
@@ -66,20 +69,16 @@ class SceneBody(NamedTuple):
         return moduli
 
 
-#: The resolved scene, its blocks, contacts across periodic sides, elements, and its own materials.
+#: The resolved scene, its blocks, contacts across periodic sides, elements, and materials.
 Meshed = tuple[AnyScene, Blocks, list[Across], Elements, list[Material]]
 
 
 def body_of(
     scene: AnyScene, model: str = "jointed", rock: Rock | None = None, dim: int | None = None
 ) -> SceneBody:
-    """Return the body of a scene; model : "jointed", or "equivalent" where sets of joints that have
-    a spacing, and a pillar's, are an effective medium.
+    """Return the body of a scene; model, rock and dim as in `continuum.run.simulate`.
 
-    rock : of the scene, of a function of its own. dim : of a pillar's mesh, in place of the
-    scene's.
-
-    Raises SceneError where the scene cannot be cut or meshed as it asks for.
+    Raises SceneError if the scene cannot be cut or meshed.
     """
     try:
         if scene.is_column:
@@ -142,7 +141,7 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
 def _simplices(
     scene: AnyScene, body: Complex, size: float, across: Sequence[Across] = ()
 ) -> Conforming:
-    """Return a mesh of simplices; raises SceneError where these have no diagonal mass."""
+    """Return a mesh of simplices; raises SceneError for orders without a diagonal mass."""
     if (order := scene.numerics.continuum.order) > 2:
         allowed = "must be at most 2 for triangles and tetrahedra"
         raise SceneError(scene.where, "numerics.continuum.order", order, allowed)
@@ -152,7 +151,7 @@ def _simplices(
 
 
 def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
-    """Return the body of a pillar in so many dimensions; columns of joints are their numbers."""
+    """Return the elements of a pillar in `dim` dimensions; a joint's column is its number."""
     p, numerics = calibrate(scene), scene.numerics.continuum
     size = 3 if dim == 1 and is_spatial(scene) else dim
     layers = layers_of(scene) if numerics.mesh is None else {}
@@ -166,7 +165,7 @@ def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
         region[own[list(less)]] = len(each) + len(layers) + np.arange(len(less))
         blocks = replace(blocks, body=replace(blocks.body, region=region))
         joint = np.arange(p.block_count - 1)
-        joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # a layer's two contacts have one
+        joint = np.repeat(joint, 1 + np.isin(joint, [*layers]))  # a layer has two contacts
         marked = np.where(np.isin(joint, joints.number), joint, -1)
         marks = marks_of(blocks, marked, blocks.body.side, SIDES)
         each = np.concatenate([each, np.ones(len(layers), int), each[p.segment[list(less)]]])
@@ -179,7 +178,7 @@ def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:
-    """Return the mesh of the blocks of a pillar; each : elements along those of each region."""
+    """Return the mesh of a pillar; each : elements along a block of each region."""
     body, numerics, many = blocks.body, scene.numerics.continuum, each[blocks.body.region]
     across, faces = numerics.elements_across, body.dim - 1
     cells = float(many.sum()) * across**faces

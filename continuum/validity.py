@@ -1,4 +1,4 @@
-"""Scenes that a dolfinx body can simulate, and the reasons why not others."""
+"""Scenes that the continuum can simulate, and the reasons why it refuses others."""
 
 import numpy as np
 
@@ -15,12 +15,11 @@ MODELS = ("jointed", "equivalent")
 #: Keys of a joint set that the effective medium does not support.
 NONLINEAR = ("friction_angle", "cohesion", "damping_ratio", *(part.keys[0] for part in PARTS))
 
-Reasons = list[tuple[bool, str]]  #: whether each holds
+Reasons = list[tuple[bool, str]]  #: whether each reason applies, and its text
 
 
 def refuse(scene: AnyScene, model: str, dim: int | None) -> None:
-    """Raise SceneError for a model or a dimension that is not there, or that does not hold for the
-    scene."""
+    """Raise SceneError for a model or dimension that is unknown or cannot represent the scene."""
     if model not in MODELS:
         raise SceneError(scene.where, "model", model, f"must be one of {', '.join(MODELS)}")
     if dim not in (None, 1, 2, 3):
@@ -60,8 +59,8 @@ def _of_rock_mass(scene: RockMass, model: str) -> Reasons:
 def dimension_of(scene: Scene, dim: int | None = None) -> int:
     """Return the dimension of a pillar's mesh: as given, or the least that can represent the scene.
 
-    1 along the axis, or across it where nothing turns; 2 in the plane of x and y; else 3. A mesh of
-    the user's own is in 2 or 3.
+    1 for axial motion or without rotations; 2 for motion in the plane of x and y; else 3. A mesh
+    from a file has 2 or 3.
     """
     if given := dim or scene.numerics.continuum.dim:
         return given
@@ -74,7 +73,7 @@ def dimension_of(scene: Scene, dim: int | None = None) -> int:
 
 
 def _leaves_plane(scene: Scene) -> bool:
-    """Return whether anything acts out of the plane of x and y."""
+    """Return whether load or gravity acts out of the plane of x and y."""
     load, gravity = scene.load, scene.gravity
     if load.arm is not None:
         return bool(load.direction[0] or load.direction[1])

@@ -1,4 +1,4 @@
-"""Snapshots as XDMF by dolfinx, which dolfinx, ParaView and VisIt read."""
+"""Snapshots as XDMF files for dolfinx, ParaView and VisIt."""
 
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,11 @@ fem, io = dolfinx.fem, dolfinx.io
 
 
 def write_xdmf(path: str | Path, result: xr.Dataset) -> Path:
-    """Write the snapshots of a result as NAME.xdmf and, beside it, NAME.h5; return the former.
+    """Write the snapshots of a result as NAME.xdmf and NAME.h5; return the path of NAME.xdmf.
 
-    The mesh, "mesh", is the unloaded body, x, y, z in m, whose blocks share no nodes. Functions of
-    time, s: "displacement", m, and "velocity", m/s, linear in cells; of cells "block", at t = 0,
-    and the stress, Pa, compression positive, by its components.
+    The mesh, "mesh", is the unloaded body, x, y, z in m; blocks share no nodes. Functions over
+    time, s: "displacement", m, and "velocity", m/s, linear in cells; constant in cells, "block", at
+    t = 0, and the components of the stress, Pa, compression positive.
 
     Raises ValueError for a result without snapshots.
     """

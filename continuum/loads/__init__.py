@@ -1,1 +1,1 @@
-"""Loads and boundary conditions of a body: forces, absorbing and held sides."""
+"""Loads and boundary conditions of a body: forces, absorbing, fixed and roller sides."""

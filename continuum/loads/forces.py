@@ -25,18 +25,18 @@ from jointwave.continuum.space.fenicsx import dolfinx
 from jointwave.continuum.space.model import Body, Facets, directions, forces_on
 
 mesh = dolfinx.mesh
-IN_A_PERIOD = 100  # samples of a field that is not evaluated at every step
-AT_ONCE = 500_000  # numbers: forces that are in memory at a time for their impulse
-NEAR = 1e-9  # of a pillar: what is at an end
+IN_A_PERIOD = 100  # samples per period of a field that is not evaluated at every step
+AT_ONCE = 500_000  # force components in memory at a time for their impulse
+NEAR = 1e-9  # distance from an end of a pillar, over its length, that counts as zero
 GAUSS = 6  # points between two nodes: exact for elements of the highest order
 
-#: Waves that enter through quiet sides: freedoms there, int array [points d], and a function of
-#: equally spaced times [n], s, that returns the forces on them [n, points d], N.
+#: Waves that enter through quiet sides: the freedoms there [points d], and a function of equally
+#: spaced times [n], s, that returns the forces on them [n, points d], N.
 Waves = tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]
 
 
 class Push(NamedTuple):
-    """A load: share [freedoms] times the mean of its history over a step, N."""
+    """A load: `share` [freedoms] times the mean of its history over a step is the force, N."""
 
     share: np.ndarray
     history: LoadHistory
@@ -57,8 +57,8 @@ def weight_of(scene: AnyScene, body: Body) -> np.ndarray | None:
 
 
 def released(scene: AnyScene, body: Body) -> np.ndarray | None:
-    """Return the force on every freedom by which walls of openings lose the prestress that what is
-    excavated bore there, N; None where nothing is."""
+    """Return the force on every freedom that releases the walls of openings from the prestress of
+    the excavated rock, N; None without an excavation."""
     if not scene.excavated:
         return None
     assert scene.prestress is not None
@@ -78,7 +78,7 @@ def pushes(scene: AnyScene, body: Body) -> list[Push]:
 
 
 def _base(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
-    """Return the force on a compliant base for each m/s that comes up."""
+    """Return the force on a compliant base per velocity of the incoming wave, N s/m."""
     assert load.side is not None and load.direction is not None
     facets = facets_on(body, [load.side])
     impedance = impedances_of(scene, body, facets)
@@ -86,13 +86,13 @@ def _base(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
 
 
 def _force(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
-    """Return a force of 1 N at a point, on the sides of a joint there alike."""
+    """Return a force of 1 N at a point, in equal parts on both sides of a joint there."""
     assert load.at is not None and load.direction is not None
     return read_at(body, np.array([load.at]))[2].T @ np.array(load.direction)
 
 
 def _pressure(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
-    """Return a pressure of 1 Pa on a side or in an opening, or on a part of it."""
+    """Return the force of a pressure of 1 Pa on a side or opening, or on a part of it."""
     facets = facets_on(body, [load.side or f"opening {load.opening}"])
     if load.between is None:
         return forces_on(body, facets, -facets.normal)
@@ -101,9 +101,9 @@ def _pressure(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:
 
 
 def _on_line(body: Body, facets: Facets, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Return a pressure of 1 Pa on a straight part of the boundary in the plane: by Gauss points
-    between the nodes there."""
-    start, end = sorted((start, end), key=tuple)  # from either end to the last bit
+    """Return the force of a pressure of 1 Pa on a straight part of the boundary in the plane, by
+    Gauss points between its nodes."""
+    start, end = sorted((start, end), key=tuple)  # bit for bit the same in both directions
     length = float(np.linalg.norm(end - start))
     along = (end - start) / length
     s = (facets.place - start) @ along
@@ -129,7 +129,7 @@ def end_force(scene: Scene, body: Body, load: Load) -> np.ndarray:
     share = forces_on(body, facets, np.tile(force[axes], (len(facets.node), 1)))
     if not moment.any() or body.mesh.geometry.dim == 1 or body.tied is not None:
         return share
-    # Tractions that are linear between nodes are forces by the form of u . v over the end.
+    # The mass matrix of the end face turns nodal tractions into forces.
     domain, y = body.mesh, float(facets.place[0, 1])
     near, dim = NEAR * float(np.ptp(body.x[:, 1])), domain.topology.dim - 1
     own = mesh.locate_entities_boundary(domain, dim, lambda x: np.abs(x[1] - y) <= near)
@@ -141,8 +141,8 @@ def end_force(scene: Scene, body: Body, load: Load) -> np.ndarray:
 
 
 def force_and_moment(load: Load) -> tuple[np.ndarray, np.ndarray]:
-    """Return force (over that of 1 Pa) and moment about the axis (m, of 1 Pa over the area) of a
-    unit end stress, along x, y, z."""
+    """Return the force over area, and the moment over area (m) at the centre of the end, of an end
+    stress of 1 Pa, along x, y, z."""
     direction = np.array(load.direction, dtype=float)
     if load.arm is not None:
         return np.zeros(3), load.arm * direction
@@ -150,8 +150,8 @@ def force_and_moment(load: Load) -> tuple[np.ndarray, np.ndarray]:
 
 
 def spread(side: float, moment: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return the tractions [n, 3] of a moment at points [n, d], as in a long column: linear in x
-    and z (Navier), and in torsion along circles about the axis."""
+    """Return the tractions [n, 3] of a moment at points [n, d], linear in x and z as in a long
+    column: axial in bending (Navier), and in torsion tangential to circles about the axis."""
     across = np.zeros((len(x), 2))
     across[:, : x.shape[1] - 1] = x[:, [0, 2][: x.shape[1] - 1]]
     bent, twisted = 12 / side**2, 6 / side**2
@@ -161,11 +161,11 @@ def spread(side: float, moment: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 class Loads:
-    """All forces that are known before a run.
+    """All forces with a given history.
 
     Attributes
     ----------
-    freedom : int array [k], on which any acts.
+    freedom : the loaded freedoms [k].
     """
 
     def __init__(self, size: int, dt: float, pushes: list[Push], waves: Waves | None) -> None:
@@ -181,7 +181,7 @@ class Loads:
         self._onto = csr_matrix((np.ones(len(there)), entries), shape)
 
     def at(self, first: int, last: int, stride: int = 1) -> np.ndarray:
-        """Return the forces of steps first .. last - 1, one in `stride`, [steps, k], N."""
+        """Return the forces of every `stride`-th of the steps first .. last - 1 [steps, k], N."""
         steps = np.arange(first, last, stride)
         found = np.zeros((steps.size, self.freedom.size))
         for push in self.pushes:
@@ -192,8 +192,8 @@ class Loads:
         return found
 
     def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
-        """Return about the integral of |F| over all steps in the norm of 1 / m, sqrt(J): of one
-        step in `stride`."""
+        """Return approximately the time integral of |F| in the norm of 1 / m, sqrt(J), from every
+        `stride`-th step."""
         felt, own = 0.0, mass[self.freedom]
         many = stride * max(1, AT_ONCE // max(1, own.size))
         for first in range(0, steps, many):
@@ -203,7 +203,7 @@ class Loads:
 
 
 def waves_of(scene: AnyScene, body: Body, incident: IncidentField | None) -> Waves | None:
-    """Return the waves of a scene; incident : their field, in intact rock where absent."""
+    """Return the waves of a scene; incident : their field; absent: that in unjointed rock."""
     if not scene.waves:
         return None
     facets = facets_on(body, scene.boundaries.sides("quiet"))

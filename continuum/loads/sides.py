@@ -1,9 +1,8 @@
-"""The sides of a body: where rock is held, absorbs waves, or bears its weight.
+"""The sides of a body: fixed and roller sides, dashpots, and sides that bear the weight.
 
-Quiet sides carry dashpots at the nodes (Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969): of
-the effective medium of the joint sets that have a spacing, and of the bar at the ends of a pillar.
-In jointed rock a matched end has half a joint in front of them, as the rock beyond would have
-(`joints.ends`).
+Quiet sides have dashpots at the nodes (Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95, 1969), with
+the impedance of the effective medium of joint sets with a spacing, or of the bar at the ends of a
+pillar. In jointed rock a matched end has half a joint in front of its dashpots (`joints.ends`).
 """
 
 from typing import Any
@@ -22,7 +21,7 @@ from jointwave.continuum.space.model import Body, Facets, at_nodes, directions
 from jointwave.continuum.stepping.problem import NO_DASHPOTS, Dashpots, Held
 from jointwave.joints.ends import HalfSpring, half_spring
 
-INSIDE = 1e-7  # of a cell: how far inside it a field is asked for, lest it is beyond a joint
+INSIDE = 1e-7  # depth in a cell, over its size, at which fields are evaluated: not beyond a joint
 #: Sides by the axis of their normal.
 AXIS = {
     2: {"left": 0, "right": 0, "bottom": 1, "top": 1},
@@ -31,8 +30,7 @@ AXIS = {
 
 
 def facets_on(body: Body, names: list[str]) -> Facets:
-    """Return the facets of sides, one after the other, at their nodes; each node once for each
-    direction that its side has there."""
+    """Return the facets of sides at their nodes; each node appears once per normal direction."""
     own, none = [body.sides[name] for name in names if name in body.sides], np.zeros(0, np.int64)
     if not own:
         empty = np.zeros((0, body.components))
@@ -50,7 +48,7 @@ def absorbing(scene: AnyScene, body: Body) -> Facets:
 
 
 def cells_behind(body: Body, facets: Facets) -> np.ndarray:
-    """Return a cell at each node of facets, int array [n]."""
+    """Return a cell at each node of facets [n]."""
     nodes = nodes_of_cells(body)
     of_node = np.empty(len(body.x), np.int64)
     of_node[nodes] = np.arange(len(nodes))[:, None]
@@ -58,7 +56,7 @@ def cells_behind(body: Body, facets: Facets) -> np.ndarray:
 
 
 def inside(body: Body, facets: Facets) -> np.ndarray:
-    """Return places just inside the rock of the nodes of facets [n, d], m."""
+    """Return places just inside the rock at the nodes of facets [n, d], m."""
     centre = compat.cell_corners(body.mesh).mean(axis=1)
     return facets.place + INSIDE * (centre[cells_behind(body, facets)] - facets.place)
 
@@ -66,8 +64,8 @@ def inside(body: Body, facets: Facets) -> np.ndarray:
 def impedances_of(
     scene: AnyScene, body: Body, facets: Facets, other: Rocks | None = None
 ) -> np.ndarray:
-    """Return the impedances of the rock behind facets, tensors [n, d, d], Pa s/m; other : rocks in
-    place of the scene's, and which of them each cell has."""
+    """Return the impedance tensors of the rock behind facets [n, d, d], Pa s/m; other : rocks that
+    replace the scene's, and the index of each cell's rock."""
     if other is not None:
         other = other[0], other[1][cells_behind(body, facets)]
     region = region_at(scene.regions, inside(body, facets))
@@ -77,7 +75,7 @@ def impedances_of(
 def quiet_sides(
     scene: AnyScene, body: Body, model: str = "jointed", other: Rocks | None = None
 ) -> Dashpots:
-    """Return the dashpots of sides that absorb waves; other : of `impedances_of`."""
+    """Return the dashpots of sides that absorb waves; other : as in `impedances_of`."""
     facets = absorbing(scene, body)
     if not len(facets.node):
         return NO_DASHPOTS
@@ -91,7 +89,8 @@ def quiet_sides(
 
 
 def _matched(scene: AnyScene, facets: Facets, z: np.ndarray) -> Dashpots:
-    """Return the dashpots of ends, some of them behind half a joint; z : impedances [n, d]."""
+    """Return the dashpots of ends, those of matched ends behind half a joint; z : impedances
+    [n, d], Pa s/m."""
     given, eta = half_joints(scene, facets.normal)
     weight, along = facets.weight[:, None], np.abs(facets.normal) > 0.5
     k = np.where(along, given[:, :1], given[:, 1:])
@@ -106,16 +105,16 @@ def _matched(scene: AnyScene, facets: Facets, z: np.ndarray) -> Dashpots:
 
 
 def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
-    """Return the areas [freedoms, freedoms] of quiet sides that bear the weight beside their
-    dashpots, m2; None without."""
+    """Return the areas [freedoms, freedoms], m2, of absorbing sides in the directions in which they
+    bear the weight; None without."""
     facets = absorbing(scene, body)
     tensors = facets.weight[:, None, None] * borne(scene, facets.normal)
     return at_nodes(facets.node, tensors, body.mass.size) if tensors.any() else None
 
 
 def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held:
-    """Return the freedoms of fixed sides, with the motion of one that is shaken, and those normal
-    to roller sides."""
+    """Return the freedoms of fixed sides, the normal ones of roller sides, and the motion of a
+    shaken side."""
     base: Any = next(iter(scene.bases), None)
     dim, direction = body.components, np.full(body.stiffness.shape[0], np.nan)
     for name in scene.boundaries.sides("fixed", "roller"):

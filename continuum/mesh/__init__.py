@@ -1,1 +1,1 @@
-"""Meshes of blocks: from the cell complex of a scene, or from a file."""
+"""Meshes of blocks, from the cell complex of a scene or from a file."""

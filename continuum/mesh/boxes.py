@@ -1,4 +1,4 @@
-"""Blocks with the corners of a box in quadrilaterals or hexahedra, and intervals."""
+"""Meshes of box-shaped blocks, in intervals, quadrilaterals or hexahedra."""
 
 from itertools import product
 from typing import NamedTuple
@@ -9,15 +9,15 @@ from jointwave.cases.geometry.cell_complex import GENERIC, Complex
 from jointwave.cases.geometry.relations import joined, merged
 from jointwave.continuum.mesh.conforming import BOXES, Conforming, facets_of
 
-ALIKE = 1e-9  # of the body: vertices of neighbours are one within it
-FLAT = 1e-3  # of a box of these edges: the volume below which its corners are in a line or plane
+ALIKE = 1e-9  # distance, over the size of the body, below which vertices coincide
+FLAT = 1e-3  # volume, over that of a box of the same edges, below which edges are coplanar
 
 
 class Boxes(NamedTuple):
-    """Boxes in basix's order, alike in equal boxes: their corners, vertices [count, 2^d], and the
-    facets of the complex that are theirs, int array [count, 2 d].
+    """Boxes in basix's order, the same for equal boxes: vertices of corners [count, 2^d], and
+    facets of the complex [count, 2 d].
 
-    Corner k is from the first along axis i where bit i of k is set.
+    Bit i of the number of a corner is its end, 0 or 1, of axis i.
     """
 
     corners: np.ndarray
@@ -25,8 +25,8 @@ class Boxes(NamedTuple):
 
 
 def boxes_of(body: Complex) -> Boxes | None:
-    """Return the cells of a complex as boxes; None where some cell is none: it has another number
-    of facets or corners, corners within an edge, or no facet opposite each facet."""
+    """Return the cells of a complex as boxes; None if some cell is no box: wrong number of facets
+    or corners, corners within an edge, or facets without an opposite facet."""
     half, dim = body.halves(), body.dim
     facet = half.facet[np.argsort(half.cell, kind="stable")]
     own = body.corners(half)
@@ -55,9 +55,8 @@ def boxes_of(body: Complex) -> Boxes | None:
 
 
 def _axes(x: np.ndarray, first: np.ndarray, beyond: np.ndarray) -> np.ndarray:
-    """Return the order of the axes of boxes, alike in equal ones and right-handed, int array
-    [n, d]; first : corner at which they begin. beyond : corners at their far ends, bool array
-    [n, d, 2^d]."""
+    """Return the order of the axes of boxes [n, d], right-handed and the same for equal boxes;
+    first : corner at which axes begin. beyond : corners at their far ends, bool [n, d, 2^d]."""
     alone, box = beyond & (beyond.sum(axis=1) == 1)[:, None], np.arange(len(x))
     arms = np.take_along_axis(x, alone.argmax(axis=2)[..., None], 1) - x[box, first][:, None]
     towards = arms @ GENERIC[::-1][: x.shape[2]] / np.linalg.norm(arms, axis=2)
@@ -69,7 +68,7 @@ def _axes(x: np.ndarray, first: np.ndarray, beyond: np.ndarray) -> np.ndarray:
 
 
 def _sides(kind: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return the axis across each facet of a box, and the end of the axis that it is at, 0 or 1."""
+    """Return the axis normal to each facet of a box, and its end of the axis, 0 or 1."""
     corners = facets_of(kind)
     bits = corners[..., None] >> np.arange(len(corners) // 2) & 1
     axis = (np.ptp(bits, axis=1) == 0).argmax(axis=1)
@@ -77,7 +76,7 @@ def _sides(kind: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_flat(x: np.ndarray) -> bool:
-    """Return whether some box has edges in a line or plane at a corner; x : [n, 2^d, d], m."""
+    """Return whether edges at a corner of some box lie in a line or plane; x : [n, 2^d, d], m."""
     dim = x.shape[2]
     at = np.arange(2**dim)
     arms = np.stack([x[:, at ^ (1 << i)] - x[:, at] for i in range(dim)], axis=3)
@@ -86,7 +85,7 @@ def _is_flat(x: np.ndarray) -> bool:
 
 
 def extents(body: Complex, corners: np.ndarray) -> np.ndarray:
-    """Return the longest edge of boxes along each of their axes [count, d], m."""
+    """Return the longest edge of boxes along each axis [count, d], m."""
     return np.stack([
         np.linalg.norm(body.vertices[a] - body.vertices[b], axis=2).max(axis=1)
         for a, b in _parallel_edges(corners)
@@ -94,9 +93,9 @@ def extents(body: Complex, corners: np.ndarray) -> np.ndarray:
 
 
 def along_edges(corners: np.ndarray, wanted: np.ndarray, like: np.ndarray) -> np.ndarray:
-    """Return numbers of cells along the axes of boxes [count, d] that neighbours have in common, at
-    least those wanted, int array [count, d]; like : int array [v], the vertex that each counts as,
-    which differs across periodic sides."""
+    """Return numbers of cells along the axes of boxes [count, d], at least `wanted` [count, d] and
+    equal on shared edges; like : of each vertex [v], its partner across periodic sides or itself.
+    """
     corners = like[corners]
     edges = [np.sort(np.stack(ends, axis=2), axis=2) for ends in _parallel_edges(corners)]
     every = np.stack(edges, axis=1)
@@ -117,7 +116,7 @@ def _parallel_edges(corners: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def box_mesh(body: Complex, boxes: Boxes, counts: np.ndarray) -> Conforming:
-    """Return the mesh of boxes with numbers of cells along their axes [count, d]."""
+    """Return the mesh of boxes; counts : cells along their axes [count, d]."""
     kind, dim, (corners, faces) = BOXES[body.dim], body.dim, boxes
     x, cells, block, on, total = [], [], [], [], 0
     for count in np.unique(counts, axis=0):
@@ -138,9 +137,8 @@ def box_mesh(body: Complex, boxes: Boxes, counts: np.ndarray) -> Conforming:
 
 
 def _grid(kind: str, count: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return a box in cells: the weights of its corners at each vertex [v, 2^d], vertices of cells
-    [c, 2^d], and the facet of the box on each facet of cells [c, 2 d], or -1; all in basix's order
-    of corners and facets."""
+    """Divide a box into cells: return the weights of its corners at each vertex [v, 2^d], vertices
+    of cells [c, 2^d], and the box facet of each cell facet [c, 2 d], or -1; in basix's order."""
     dim = len(count)
     bits = np.arange(2**dim)[:, None] >> np.arange(dim) & 1
     vertex = np.array(list(product(*map(range, count[::-1] + 1))))[:, ::-1]

@@ -1,4 +1,4 @@
-"""One conforming mesh of all blocks, and the same with its joints cut open by connectivity."""
+"""A conforming mesh of all blocks, and its cut along joints by doubling vertices."""
 
 from typing import NamedTuple
 
@@ -15,8 +15,8 @@ SIMPLEX = ("triangle", "tetrahedron")
 
 
 class Marks(NamedTuple):
-    """What facets of a complex are: the column of the law of a resolved joint, or -1, and the
-    index of the name of a side, or -1: int arrays [facets]. names : of sides."""
+    """Marks of the facets of a complex [facets]: column of the law of a resolved joint, or -1;
+    index of a side in `names`, or -1."""
 
     column: np.ndarray
     side: np.ndarray
@@ -26,13 +26,13 @@ class Marks(NamedTuple):
 def marks_of(
     blocks: Blocks, columns: np.ndarray, side: np.ndarray, names: tuple[str, ...]
 ) -> Marks:
-    """Return the marks of the facets of blocks; columns : of each contact, -1 where it is no joint.
-    side : the index of the name of the side of each facet of the boundary."""
+    """Return the marks of the facets of blocks; columns : of each contact, -1 without a joint.
+    side : index of the side of each boundary facet."""
     body, contacts = blocks.body, blocks.contacts
     sets, inner = int(body.joint_set.max(initial=0)) + 2, body.inner
 
     def number(pairs: np.ndarray, joint_set: np.ndarray) -> np.ndarray:
-        """Return a number for pairs of blocks and a joint set, in the order of contacts."""
+        """Return a unique number for two blocks and a joint set, in the order of contacts."""
         return (np.sort(pairs, axis=1) @ [blocks.count, 1]) * sets + joint_set + 1
 
     column = np.full(len(inner), -1)
@@ -43,11 +43,11 @@ def marks_of(
 
 
 class Conforming(NamedTuple):
-    """A mesh of a cell complex: neighbours share all vertices between them.
+    """A mesh of a cell complex in which neighbours share vertices.
 
-    kind : of cells, by basix's name. x : float array [v, d], m. cells : int array [c, corners], in
-    basix's order. block : int array [c], cell of the complex. on : int array [c, facets of a cell],
-    the facet of the complex that holds each facet of cells, or -1 within a block.
+    kind : of cells, by basix's name. x : vertices [v, d], m. cells : [c, corners], in basix's
+    order. block : cell of the complex [c]. on : facet of the complex that contains each facet of
+    each cell [c, facets of a cell], or -1 within a block.
     """
 
     kind: str
@@ -58,30 +58,30 @@ class Conforming(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Facets of cells [n], or pairs of them [n, 2]: int arrays of cells, and of their facets."""
+    """Facets [n], or pairs of facets [n, 2]: numbers of cells, and local numbers of facets."""
 
     cell: np.ndarray
     facet: np.ndarray
 
     def of(self, chosen: np.ndarray) -> "Places":
-        """Return those that are chosen, by a mask."""
+        """Return the rows of a mask."""
         return Places(self.cell[chosen], self.facet[chosen])
 
     def side(self, k: int) -> "Places":
-        """Return the first (0) or the second (1) of each pair."""
+        """Return the first (0) or second (1) facet of each pair."""
         return Places(self.cell[:, k], self.facet[:, k])
 
 
 def facets_of(kind: str) -> np.ndarray:
-    """Return the corners of each facet of a cell, int array [facets, corners of a facet]."""
+    """Return the corners of each facet of a cell [facets, corners of a facet]."""
     return np.array(basix.topology(getattr(basix.CellType, kind))[-2])
 
 
 def on_facets(
     kind: str, cells: np.ndarray, vertices: np.ndarray, facet: np.ndarray, count: int
 ) -> np.ndarray:
-    """Return `Conforming.on` of cells by facets, int array [n, corners of a facet], that lie on
-    facets of the complex, int array [n]; count : of vertices."""
+    """Return `Conforming.on` of cells; vertices : of mesh facets [n, corners of a facet] on these
+    facets of the complex [n]. count : number of vertices."""
     corners = np.sort(cells[:, facets_of(kind)], axis=2)
     own, known = (row_numbers(np.sort(one, axis=-1), count) for one in (corners, vertices))
     order = np.argsort(known)
@@ -90,16 +90,16 @@ def on_facets(
 
 
 def row_numbers(rows: np.ndarray, count: int) -> np.ndarray:
-    """Return a number for each row [..., n] of vertices below `count`, the same for equal ones."""
+    """Return a number for each row [..., n] of vertices below `count`, unique up to equal rows."""
     flat = rows.reshape(-1, rows.shape[-1])
     found = flat[:, 0].astype(np.int64)
-    for column in flat.T[1:3]:  # vertices of a facet in space differ by the first three
+    for column in flat.T[1:3]:  # three vertices identify a facet in space
         found = found * count + column
     return found.reshape(rows.shape[:-1])
 
 
 def shared(mesh: Conforming) -> Places:
-    """Return the pairs of facets that two cells share."""
+    """Return the pairs of cell facets at each facet that two cells share."""
     vertices = np.sort(mesh.cells[:, facets_of(mesh.kind)], axis=2)  # [c, facets, n]
     number = row_numbers(vertices, len(mesh.x)).ravel()
     order = np.argsort(number, kind="stable")
@@ -108,11 +108,11 @@ def shared(mesh: Conforming) -> Places:
 
 
 def cut_open(mesh: Conforming, pairs: Places, cut: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return cells [c, corners] with vertices of their own on either side of cut facets, and the
-    vertex of the mesh that each of these is.
+    """Return cells [c, corners] with vertices doubled along cut facets, and the original of each
+    new vertex.
 
-    pairs : all that are shared; cut : which are cut, bool array [n]. Around a vertex at the tip of
-    a cut, facets that are not cut lead from one side to the other: it stays one.
+    pairs : all shared facets. cut : which of them to cut, bool [n]. A vertex at the tip of a cut is
+    not doubled: facets that are not cut connect both sides around it.
     """
     corners = facets_of(mesh.kind)
     at = mesh.cells.shape[1] * pairs.cell[..., None] + corners[pairs.facet]  # corners of all cells

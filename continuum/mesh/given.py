@@ -1,9 +1,8 @@
 """A user's own gmsh file as the mesh of a pillar: joints of any shape within it.
 
-Groups whose names start with "rock" hold the cells, groups whose names start with "joint" the
-facets of joints. At a joint the file may have vertices once, or twice with the facets of either
-side tagged. The end faces are the groups "start" and "end", or else the facets at y = 0 and y =
-length.
+Groups whose names start with "rock" contain the cells, groups whose names start with "joint" the
+facets of joints. Vertices at a joint may be single, or double with the facets of either side
+tagged. The end faces are the groups "start" and "end", or else the facets at y = 0 and y = length.
 """
 
 from typing import NamedTuple
@@ -31,18 +30,18 @@ from jointwave.continuum.mesh.conforming import (
 )
 from jointwave.continuum.mesh.size import body_bytes
 
-PLACE = 1e-6  # of the pillar's length and side: tolerance of the file's dimensions
-APART = 1e-4  # of the shortest distance in a cell: vertices of two sides of a joint that are one
+PLACE = 1e-6  # tolerance of the file's dimensions, over the pillar's length and side
+APART = 1e-4  # distance, over the shortest in a cell, below which vertices coincide
 DIMENSION = {kind: dim for kinds in (BOXES, SIMPLICES) for dim, kind in kinds.items()}
 KEY = "numerics.continuum.mesh"  #: the key of the scene
 
 
 class CellFacets(NamedTuple):
-    """The facets of all cells, once for each cell.
+    """The facets of all cells, shared ones once per cell; arrays [c, f].
 
-    x : float array [c, f, corners, d], m. group : of the file, int array [c, f], -1 of none.
-    joint : the group of joints that a facet or the one facing it is in, -1 of none. facing : number
-    of facets at the same place, itself too. shared : the same for facets with the same vertices.
+    x : corners [c, f, corners, d], m. group : of the file, -1 for none. joint : group "joint..." of
+    the facet or of one at the same place, -1 for none. facing : number of facets at the same place,
+    itself included. shared : number of facets with the same vertices, itself included.
     """
 
     x: np.ndarray
@@ -56,13 +55,13 @@ def mesh_of_file(
     scene: Scene, resolved: np.ndarray, dim: int | None = None
 ) -> tuple[Blocks, Conforming, Marks]:
     """Return the pillar of `numerics.continuum.mesh` as one block, its mesh, and the marks of its
-    facets: of `Conforming.on` joints come first, by their number in the pillar.
+    facets; in `Conforming.on` the numbers of the pillar's joints come first.
 
-    resolved : which joints are, int array. dim : that the mesh must have; None for any.
+    resolved : numbers of the resolved joints. dim : required dimension; None for any.
 
-    The law of a facet is that of the pillar's joint nearest in y: nearest to the facet itself if it
-    lies across the pillar, nearest to the group's mean for all other facets of a group. Raises
-    SceneError where the file does not fit the scene.
+    The law of a facet is that of the pillar's joint nearest in y: to the facet if it lies across
+    the pillar, to the mean of all other facets of its group otherwise. Raises SceneError if the
+    file does not fit the scene.
     """
     numerics, p = scene.numerics.continuum, calibrate(scene)
     order, path = numerics.order, numerics.mesh_path
@@ -91,8 +90,7 @@ def mesh_of_file(
 
 
 def _mesh(tagged: Tagged, p: Properties) -> Conforming:
-    """Return the mesh of a file, its cells along the pillar: the first of two beside a joint is the
-    one towards y = 0."""
+    """Return the mesh of a file, with cells in the order of y."""
     kind, names = tagged.kind, sorted(tagged.facets)
     used, cells = np.unique(tagged.cells, return_inverse=True)
     x, cells = tagged.x[used], cells.reshape(tagged.cells.shape)
@@ -117,7 +115,7 @@ def _mesh(tagged: Tagged, p: Properties) -> Conforming:
         if not chosen.any() or (chosen & ~face).any():
             raise MeshError(f"the facets of its {name} face must lie at y = {y:g} m")
         on[chosen] = p.block_count - 1 + k
-    at_joint = np.zeros(len(x), bool)  # rock may touch other rock in a vertex that it has twice
+    at_joint = np.zeros(len(x), bool)  # merge double vertices at joints only
     at_joint[one[cells[:, facets_of(kind)][found.joint >= 0]]] = True
     vertex = np.where(at_joint[one], one, np.arange(len(x)))
     used, numbers = np.unique(vertex[cells], return_inverse=True)
@@ -137,7 +135,7 @@ def _check_extent(x: np.ndarray, p: Properties, dim: int) -> None:
 
 
 def _oriented(kind: str, x: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return cells with positive Jacobians: mirrored ones are turned. Raises MeshError."""
+    """Return cells with positive Jacobians, mirrored ones renumbered. Raises MeshError."""
     corner = np.arange(cells.shape[1])
     if kind in SIMPLEX:
         turned = np.append(corner[:-2], corner[:-3:-1])
@@ -153,8 +151,8 @@ def _oriented(kind: str, x: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def _jacobians(kind: str, x: np.ndarray) -> np.ndarray:
-    """Return the determinants of the Jacobians at the corners [c, n] of cells, m^d; of a simplex
-    one. x : of their corners [c, corners, d], m."""
+    """Return the Jacobian determinants at the corners of cells [c, n], m^d (of a simplex only one);
+    x : corners [c, corners, d], m."""
     if kind in SIMPLEX:
         return np.linalg.det(x[:, 1:] - x[:, :1])[:, None]
     corner, bit = np.arange(x.shape[1])[:, None], 1 << np.arange(x.shape[2])
@@ -162,9 +160,9 @@ def _jacobians(kind: str, x: np.ndarray) -> np.ndarray:
 
 
 def _grouped(kind: str, cells: np.ndarray, facets: list[np.ndarray], count: int) -> np.ndarray:
-    """Return the group of each facet of each cell, int array [c, f], -1 of none.
+    """Return the group of each facet of each cell [c, f], -1 for none.
 
-    facets : of each group, by vertices [n, corners] below `count`. Raises MeshError.
+    facets : of each group, vertices [n, corners] below `count`. Raises MeshError.
     """
     if not facets:
         return np.full((len(cells), len(facets_of(kind))), -1)
@@ -186,8 +184,8 @@ def _facets(
 ) -> CellFacets:
     """Return the facets of cells [c, corners] between vertices x [v, d], m.
 
-    one : the vertex that each counts as, int array [v]. group : of facets [c, f]. of_joints : which
-    groups are of joints, the last of them none, bool array.
+    one : representative of the coincident vertices of each vertex [v]. group : of facets [c, f].
+    of_joints : whether each group is of joints, with False at the end for no group.
     """
     vertices, times = cells[:, facets_of(kind)], []
     for own in (vertices, one[vertices]):
@@ -201,8 +199,8 @@ def _facets(
 
 
 def _check_joints(found: CellFacets, of_joints: np.ndarray, p: Properties) -> None:
-    """Raise MeshError for facets of joints without one partner, for facets at one place that are of
-    no joint, where nothing would connect the rock, and for cells that overlap."""
+    """Raise MeshError for facets of joints without exactly one partner, for coincident facets in no
+    joint, which nothing would connect, and for cells that overlap."""
     if found.shared.max() > 2:
         raise MeshError("some of its cells overlap: more than two share one facet")
     tagged = of_joints[found.group]
@@ -224,8 +222,8 @@ def _check_joints(found: CellFacets, of_joints: np.ndarray, p: Properties) -> No
 
 
 def _nearest_joints(found: CellFacets, p: Properties) -> np.ndarray:
-    """Return the pillar's joint whose law each facet of a joint has, int array [c, f]: the nearest
-    in y to a facet across the pillar, for all others of a group the nearest to their mean."""
+    """Return the pillar's joint that gives each facet of a joint its law [c, f]: the nearest in y
+    to a facet across the pillar, for the others of a group the nearest to their mean."""
     y, length = found.x[..., 1].mean(axis=2), float(p.contact_y[-1])
     inclined = np.ptp(found.x[..., 1], axis=2) > PLACE * length
     for k in np.unique(found.joint[inclined & (found.joint >= 0)]):

@@ -1,4 +1,4 @@
-"""Facets of a mesh at periodic sides, and those that they face across the domain."""
+"""Matching facets of a mesh at pairs of periodic sides."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,15 +13,14 @@ from jointwave.cases.geometry.measure import facet_moments
 from jointwave.cases.geometry.periodic import Across
 from jointwave.continuum.mesh.conforming import Conforming, Places, facets_of
 
-SAME = 1e-7  # of the domain: places on the two sides are one within it
+SAME = 1e-7  # distance, over the size of the domain, below which shifted places coincide
 
 
 class Facing(NamedTuple):
-    """Facets of cells at the far one of two periodic sides and those at the near one.
+    """Pairs of facets of cells at two periodic sides, the far and the near one.
 
-    pairs : far, near. column : int array [n], of the law. joint : bool array [n], whether a joint
-    lies there. vertices : int array [v], of the mesh, with those at the near
-    side replaced by the far ones that they face.
+    pairs : far, near. column : of the law [n]. joint : whether a joint lies there, bool [n].
+    vertices : of the mesh [v], those at the near side replaced by their partners at the far side.
     """
 
     pairs: Places
@@ -31,10 +30,10 @@ class Facing(NamedTuple):
 
 
 def facing(mesh: Conforming, body: Complex, across: Across, first: int) -> Facing:
-    """Return the facets of a mesh that face each other across periodic sides; first : column of the
-    first contact across them.
+    """Return the pairs of mesh facets across periodic sides; first : column of the first contact
+    across them.
 
-    Raises GeometryError where the mesh of one side does not fit that of the other.
+    Raises GeometryError if the meshes of the two sides do not match.
     """
     cell, facet = np.nonzero(np.append(~body.inner, False)[mesh.on])
     corners = mesh.cells[cell[:, None], facets_of(mesh.kind)[facet]]
@@ -55,7 +54,7 @@ def facing(mesh: Conforming, body: Complex, across: Across, first: int) -> Facin
 
 
 def _contacts(blocks: np.ndarray, middle: np.ndarray, across: Across) -> np.ndarray:
-    """Return the contact between blocks [n, 2] at places [n, d] of the far side."""
+    """Return the contact between blocks [n, 2] nearest to places [n, d] at the far side."""
     known = across.contacts
     apart = np.abs(blocks[:, None] - known.blocks).sum(axis=2) > 0
     away = np.linalg.norm(middle[:, None] - known.centroid, axis=2)
@@ -63,15 +62,15 @@ def _contacts(blocks: np.ndarray, middle: np.ndarray, across: Across) -> np.ndar
 
 
 def matching_facets(body: Complex, across: Across) -> np.ndarray:
-    """Return the facets of a complex at the far side and those that they face, int array [n, 2];
-    those that face parts of several are left out."""
+    """Return pairs of matching facets of a complex at the far and near side [n, 2], without facets
+    that face parts of several others."""
     far, near, alike = _matched(body, across, facet_moments(body).centroid, ~body.inner)
     return np.stack([far[alike >= 0], near[alike[alike >= 0]]], axis=1)
 
 
 def matching_vertices(body: Complex, across: Sequence[Across]) -> np.ndarray:
-    """Return the vertex that each counts as: at near sides the one at the far side that it faces,
-    int array [v]."""
+    """Return for each vertex [v] its partner at the far side, or itself if it is not at a near
+    side."""
     found = np.arange(len(body.vertices))
     for one in across:
         far, near, alike = _matched(body, one, body.vertices, np.ones(len(found), bool))
@@ -80,8 +79,8 @@ def matching_vertices(body: Complex, across: Sequence[Across]) -> np.ndarray:
 
 
 def fitted(body: Complex, across: Sequence[Across]) -> Complex:
-    """Return a complex in the plane whose edges at periodic sides end at the same places on both,
-    each split where the other side has a vertex; in space the complex as it is."""
+    """Return a complex in the plane with edges at periodic sides split where the opposite side has
+    a vertex; in space the complex itself."""
     for one in across if body.dim == 2 else ():
         axis = int(np.flatnonzero(one.shift)[0])
         ends = body.vertices[:, axis].max(), body.vertices[:, axis].min()
@@ -94,8 +93,8 @@ def fitted(body: Complex, across: Sequence[Across]) -> Complex:
 
 
 def _split(body: Complex, own: np.ndarray, places: np.ndarray, tolerance: float) -> Complex:
-    """Return a complex in the plane with the edges between some vertices (bool array [v]) split at
-    those places [n, 2], m, that lie within them."""
+    """Return a complex in the plane with edges between vertices `own` (bool [v]) split at the
+    places [n, 2], m, that lie within them."""
     ends = body.bounds[0][:, 1].reshape(-1, 2)
     pieces, of, x = [], [], [*body.vertices]
     for facet, (a, b) in enumerate(ends.tolist()):
@@ -116,8 +115,8 @@ def _split(body: Complex, own: np.ndarray, places: np.ndarray, tolerance: float)
 def _matched(
     body: Complex, across: Across, x: np.ndarray, chosen: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return those of some places x [n, d] that are at the far side, those at the near side, and
-    for each far one the number of the near one that it faces, or -1."""
+    """Return which of the chosen places x [n, d] are at the far side, which at the near side, and
+    for each far one the position of its partner among the near ones, or -1."""
     axis = int(np.flatnonzero(across.shift)[0])
     tolerance = SAME * float(np.ptp(body.vertices, axis=0).max())
     ends = body.vertices[:, axis].max(), body.vertices[:, axis].min()

@@ -1,4 +1,4 @@
-"""gmsh without side effects: silent, with its defaults, and finalised after use."""
+"""gmsh sessions without side effects: silent, with default options, finalised after use."""
 
 import inspect
 import locale
@@ -11,11 +11,11 @@ from jointwave.cases.gmsh_file import INSTALL
 
 @contextmanager
 def gmsh_session() -> Iterator:
-    """Start gmsh with its own defaults and an empty model, and yield its module.
+    """Start gmsh with default options and an empty model, and yield its module.
 
     Raises ImportError, with installation instructions, if gmsh cannot be loaded.
-    Raises RuntimeError if a session is already open, whose options would change the mesh; gmsh
-    before 4.9 cannot detect this, and that session ends with this one.
+    Raises RuntimeError if a session is already open, whose options would change the mesh. gmsh
+    before 4.9 cannot detect this; the open session then ends with this one.
     """
     with _process_as_it_was():
         try:
@@ -39,7 +39,7 @@ def gmsh_session() -> Iterator:
 
 @contextmanager
 def _process_as_it_was() -> Iterator[None]:
-    """Restore the locale's number format and, for old versions, interrupts changed by gmsh."""
+    """Restore the locale's number format and the interrupt handler, which gmsh may change."""
     notation, interrupt = locale.setlocale(locale.LC_NUMERIC), signal.getsignal(signal.SIGINT)
     try:
         yield

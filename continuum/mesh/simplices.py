@@ -1,8 +1,8 @@
-"""Blocks of any shape in triangles or tetrahedra, by gmsh.
+"""Meshes of triangles or tetrahedra for blocks of any shape, by gmsh.
 
-In the plane blocks that are alike are drawn once, and their mesh is moved to each of them:
-neighbours fit each other since edges are divided by their length. In space vertices, edges, faces
-and cells of the complex are gmsh's points, lines, surfaces and volumes.
+In the plane equal blocks are meshed once, and the mesh is shifted to each of them. Neighbours
+conform since the division of an edge depends on its length only. In space vertices, edges, faces
+and cells of the complex become gmsh's points, lines, surfaces and volumes.
 """
 
 from collections import defaultdict
@@ -16,13 +16,12 @@ from jointwave.cases.geometry.relations import composed, distinct, merged
 from jointwave.continuum.mesh.conforming import SIMPLICES, Conforming, on_facets
 from jointwave.continuum.mesh.session import gmsh_session
 
-ALIKE = 1e-8  # of the body: what blocks that are alike may differ by
+ALIKE = 1e-8  # difference, over the size of the body, between equal blocks
 LINE, TRIANGLE, TETRAHEDRON = 1, 2, 4  # gmsh's types of elements
 KINDS = {1: LINE, 2: TRIANGLE, 3: TETRAHEDRON}
 
 
-#: Blocks that are alike, each with its first vertex and its facets, in one order: int arrays
-#: [n], [n] and [n, k].
+#: Equal blocks [n], their first vertices [n], and their facets [n, k] in a common order.
 Alike = tuple[np.ndarray, ...]
 
 
@@ -31,10 +30,10 @@ def simplex_mesh(
 ) -> Conforming:
     """Return the mesh of a complex in the plane or in space, of simplices of about this size, m.
 
-    alike : pairs of faces in space that are divided alike, int array [n, 2], the first of them
-    moved by a shift [3], m, from the second.
+    alike : pairs of faces in space with equal meshes [n, 2], and the shift [3], m, of the first
+    from the second.
 
-    Raises ImportError, with the way to install it, where gmsh is not there.
+    Raises ImportError, with installation instructions, without gmsh.
     """
     tolerance = ALIKE * float(np.ptp(body.vertices, axis=0).max())
     groups = _alike(body, tolerance)
@@ -53,7 +52,7 @@ def simplex_mesh(
 
 
 def _alike(body: Complex, tolerance: float) -> list[Alike]:
-    """Return the blocks in groups that are equal but for a shift; in space each alone."""
+    """Return groups of blocks that are equal up to a shift; in space each block alone."""
     half, x = body.halves(), body.vertices
     groups: dict[Any, list] = defaultdict(list)
     facets_of = distinct(np.stack([half.cell, half.facet], axis=1))
@@ -62,7 +61,7 @@ def _alike(body: Complex, tolerance: float) -> list[Alike]:
             for of in (facets_of, body.corners(half))]  # fmt: skip
     for cell, (facets, vertices) in enumerate(zip(*each, strict=True)):
         steps = np.rint((x[vertices] - x[vertices].min(axis=0)) / tolerance).astype(np.int64)
-        first = vertices[np.lexsort(steps.T)[0]]  # that equal shapes have in common
+        first = vertices[np.lexsort(steps.T)[0]]  # the same one in equal shapes
         key, order = [], np.zeros(0)
         for places in (x[vertices], middles[facets]):
             steps = np.rint((places - x[first]) / tolerance).astype(np.int64)
@@ -73,8 +72,8 @@ def _alike(body: Complex, tolerance: float) -> list[Alike]:
 
 
 class _Drawing:
-    """What has been drawn of a complex: tags of points, lines and surfaces, by their numbers; in
-    the plane those of the last block."""
+    """A complex in gmsh: tags of its points, lines and surfaces drawn so far, by number; in the
+    plane those of the last block only."""
 
     def __init__(self, model: Any, body: Complex, size: float, tolerance: float) -> None:
         self.model, self.body, self.size, self.tolerance = model, body, size, tolerance
@@ -84,7 +83,7 @@ class _Drawing:
         self.surfaces: dict[int, int] = {}
 
     def block(self, facets: list[int]) -> tuple[int, list[int]]:
-        """Draw a block of these facets; return its tag, and those of the facets."""
+        """Draw a block with these facets; return its tag and the tags of the facets."""
         geo = self.model.geo
         if self.body.dim == 2:
             self.points, self.lines = {}, {}
@@ -97,14 +96,14 @@ class _Drawing:
         return geo.addVolume([geo.addSurfaceLoop(tags)]), tags
 
     def _line(self, edge: int) -> int:
-        """Draw an edge, divided by its length; return its tag."""
+        """Draw an edge, with divisions by its length; return its tag."""
         geo, x, ends = self.model.geo, self.body.vertices, self.ends[edge].tolist()
         if edge not in self.lines:
             for vertex in ends:
                 if vertex not in self.points:
                     self.points[vertex] = geo.addPoint(*[*x[vertex].tolist(), 0.0][:3])
             self.lines[edge] = geo.addLine(*(self.points[vertex] for vertex in ends))
-            # Shorter by more than edges differ that are alike: they are divided alike.
+            # Less than the tolerance of equal edges, so that these have equal divisions.
             length = np.linalg.norm(x[ends[1]] - x[ends[0]]) - 4 * self.tolerance
             count = max(1, int(np.ceil(length / self.size)))
             geo.mesh.setTransfiniteCurve(self.lines[edge], count + 1)
@@ -122,7 +121,7 @@ class _Drawing:
         return int(self.model.geo.addCurveLoop(loop))
 
     def repeat(self, pairs: np.ndarray, shift: np.ndarray) -> None:
-        """Let the first face of each pair have the mesh of the second one, moved."""
+        """Give the first face of each pair the shifted mesh of the second one."""
         move = np.eye(4)
         move[:3, 3] = shift
         tags = [[self.surfaces[k] for k in side] for side in pairs.T.tolist()]
@@ -132,8 +131,8 @@ class _Drawing:
 def _read(
     mesh: Any, dim: int, tag: int, facets: list[int]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the mesh of a block: places of its vertices [v, d], m, cells [c, d + 1], and the place
-    among its facets of each facet of cells [c, d + 1], or -1."""
+    """Return the mesh of a block: vertices [v, d], m, cells [c, d + 1], and for each facet of cells
+    the index of the block's facet [c, d + 1], or -1."""
     nodes, places, _ = mesh.getNodes(dim, tag, includeBoundary=True)
     nodes, first = np.unique(np.asarray(nodes, np.int64), return_index=True)
     x = np.asarray(places).reshape(-1, 3)[first, :dim]
@@ -154,7 +153,7 @@ def _placed(
     found: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]],
     tolerance: float,
 ) -> Conforming:
-    """Return the mesh of all blocks from those of one of each group."""
+    """Return the mesh of all blocks from the mesh of one block of each group."""
     x, cells, block, on, total = [], [], [], [], 0
     for (of, corner, facets), (places, own, facet) in zip(groups, found, strict=True):
         count, origin = len(of), body.vertices[corner]
@@ -174,7 +173,7 @@ def _placed(
 
 
 def own_cells(body: Complex) -> Conforming:
-    """Return the mesh of a complex whose cells are simplices, as they are."""
+    """Return a complex of simplices as a mesh, one cell each."""
     half, dim = body.halves(), body.dim
     cells = body.corners(half)[:, 1].reshape(-1, dim + 1)
     number = np.arange(len(body.sides))
@@ -191,7 +190,7 @@ def are_simplices(body: Complex) -> bool:
 
 
 def _oriented(mesh: Conforming) -> Conforming:
-    """Return a mesh of simplices whose cells have positive volumes."""
+    """Return a mesh of simplices with positive volumes."""
     arms = mesh.x[mesh.cells[:, 1:]] - mesh.x[mesh.cells[:, :1]]
     turned = np.linalg.det(arms) < 0
     cells, on = mesh.cells.copy(), mesh.on.copy()

@@ -1,4 +1,4 @@
-"""Sizes of elements: those that waves need, and the memory that a body of them takes."""
+"""Sizes of elements that waves need, and the memory of a body."""
 
 from collections.abc import Iterator
 from math import ceil, sqrt
@@ -17,21 +17,21 @@ from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings.sources import of_resolution
 
-#: Elements in the way of the slowest wave in one period, by their order.
+#: Elements per wavelength of the slowest wave at the shortest period, by order.
 IN_PERIOD = {1: 40.0, 2: 12.0, 3: 6.0, 4: 4.0}
-#: Times as many for pulses that start or end with a kink, and in simplices.
+#: Factors on it for pulses that start or end with a kink, and for simplices.
 OF_KINKS, OF_SIMPLICES = 2.0, 1.5
-#: Of the period: the longest travel time of a wave through one element of a pillar. A load that
-#: starts like a sine has a kink, which only dashpots smooth as it propagates.
+#: Longest travel time of a wave through an element of a pillar, over the period. A load that starts
+#: like a sine has a kink, which only dashpots smooth as it propagates.
 TRAVEL_OF_KINKS, TRAVEL_OF_DAMPED = 0.01, 0.04
-#: Bytes a freedom, and for each entry of its row of the stiffness: the operators as they are made.
+#: Bytes a freedom, and bytes an entry of the stiffness, during assembly.
 FREEDOM, ENTRY = 500, 40
-FLUID = 1e-9  # of the largest modulus: below it rock has no shear waves
+FLUID = 1e-9  # modulus, over the largest one, below which rock has no shear waves
 
 
 def element_size(scene: RockMass, simplices: bool) -> float:
-    """Return about how large elements are, m: `numerics.continuum.size`, or what resolves the
-    slowest waves of the shortest pulse, in rock with its joints; those of a mesh as they are."""
+    """Return the approximate size of elements, m: `numerics.continuum.size`, or one that resolves
+    the slowest waves of the shortest pulse in jointed rock; infinite for the blocks of a mesh."""
     numerics = scene.numerics.continuum
     if numerics.size is not None or scene.domain.mesh is not None:
         return numerics.size or np.inf
@@ -41,7 +41,7 @@ def element_size(scene: RockMass, simplices: bool) -> float:
 
 
 def elements_along(scene: Scene, model: str) -> np.ndarray:
-    """Return how many elements resolve the waves in a block of each part of a pillar, int array."""
+    """Return the number of elements that resolve the waves in a block of each part of a pillar."""
     given, counts = scene.numerics.continuum.elements_per_block, []
     for one in calibrate(scene).each:
         modulus = one.modulus if model == "equivalent" else one.intact_modulus
@@ -53,8 +53,8 @@ def elements_along(scene: Scene, model: str) -> np.ndarray:
 
 
 def resolved_period(scene: AnyScene) -> float:
-    """Return the period (s) that elements resolve: the shortest of what acts, or a tenth of the
-    scene."""
+    """Return the period (s) that elements resolve: the shortest of the loads, or a tenth of the
+    duration."""
     return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
@@ -65,8 +65,7 @@ def refuse_large_mesh(
     components: int,
     key: str = "numerics.continuum.size",
 ) -> None:
-    """Raise SceneError where elements of this size (m), which a key decides, would not fit in
-    memory."""
+    """Raise SceneError if elements of this size (m) do not fit in memory; key : sets the size."""
     order, dim = scene.numerics.continuum.order, blocks.body.dim
     surface = float(2 * blocks.contacts.area.sum() + blocks.boundary.area.sum()) / 2
     cells = float(blocks.volume.sum()) / size**dim + surface / size ** (dim - 1) + blocks.count
@@ -79,18 +78,18 @@ def refuse_large_mesh(
 
 
 def body_bytes(nodes: float, components: int, order: int, dim: int) -> float:
-    """Return the memory that a body takes, bytes."""
+    """Return the memory of a body, bytes."""
     return components * nodes * (FREEDOM + ENTRY * components * (order + 1) ** dim)
 
 
 def of_coarse_cells(
     scene: AnyScene, scripted: bool, corners: np.ndarray, moduli: np.ndarray, density: np.ndarray
 ) -> Iterator[str]:
-    """Say where cells of a file, or beside the rock of a script, are too large for the shortest
-    wave: S at the highest frequency, of axial motion along a pillar the axial one.
+    """Warn of cells, of a file or with a script's rock, too large for the shortest wave: S waves at
+    the highest frequency, or axial waves in an axial pillar.
 
-    corners : of cells [cells, n, d], m. moduli, density : of their rock, in Voigt's form
-    [cells, n, n], Pa, and [cells], kg/m3.
+    corners : of cells [cells, n, d], m. moduli : stiffness of their rock in Voigt's form
+    [cells, n, n], Pa. density : [cells], kg/m3.
     """
     frequency = highest_frequency(scene)
     if frequency is None:
@@ -100,7 +99,7 @@ def of_coarse_cells(
         size = size[:, [axis]]
     if scene.is_column and not is_spatial(scene):
         least = moduli[:, axis, axis]
-    else:  # of isotropic rock the shear modulus, of a fluid that of pressure
+    else:  # the shear modulus of isotropic rock, the modulus under pressure of a fluid
         values = np.linalg.eigvalsh(moduli)
         least = np.where(values > FLUID * values.max(), values, np.inf).min(axis=1)
     wave = np.sqrt(least / density) / frequency

@@ -1,1 +1,1 @@
-"""Explicit steps of a body that several processes share."""
+"""Explicit steps of a body by several processes."""

@@ -1,10 +1,10 @@
-"""Explicit steps of a body that several processes share.
+"""Explicit steps of a body by several processes.
 
-Each process has the whole body while a run is set up, and keeps its share: complete rows of the
-matrices for the freedoms that it steps, and all points of joints that act on these. Freedoms of
-others that these rows and points need, the halo, follow by one exchange of velocities a step, by
-PETSc's star forest. Nothing is summed over processes but what is recorded, once a chunk of steps.
-A point that several processes need is found by each from the same numbers in the same order.
+Each process sets up the whole body and keeps its share: complete rows of the matrices for the
+freedoms that it steps, and all points of joints that act on them. The halo, freedoms of other
+processes in these rows and points, is updated by one exchange of velocities a step, by PETSc's star
+forest. Only recorded values are summed over processes, once a chunk of steps. Processes that need
+the same point all compute it from the same numbers in the same order.
 """
 
 from zlib import crc32
@@ -21,12 +21,13 @@ from jointwave.continuum.stepping.problem import Problem
 
 
 class SharedLeapfrog(Leapfrog):
-    """Explicit steps of a problem that the processes of its communicator share; all call its
-    methods and read its properties alike, and get the whole of it.
+    """Explicit steps of a problem by the processes of its communicator. Methods and properties are
+    collective and return whole vectors.
 
     Attributes
     ----------
-    problem : the whole one. samples : of the whole, after each call of `take`. state : of a share.
+    problem : the whole problem. samples : of the whole, after each call of `take`. state : of this
+    process's share.
     """
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
@@ -45,29 +46,29 @@ class SharedLeapfrog(Leapfrog):
 
     @property
     def parts(self) -> tuple:
-        """All arrays that change, and a number of the partition."""
+        """All arrays that change, and a checksum of the partition."""
         return *super().parts, self._partition
 
     def whole(self, vector: np.ndarray) -> np.ndarray:
-        """Return the values of all freedoms in the vectors of all processes."""
+        """Return the values of all freedoms from the vectors of all processes."""
         found = np.empty(self._order.size)
         found[self._order] = np.concatenate(self.problem.comm.allgather(super().whole(vector)))
         return found
 
     def place(self, values: np.ndarray, vector: np.ndarray) -> None:
-        """Put values of all freedoms into a vector of the share."""
+        """Set a vector of the share from the values of all freedoms."""
         super().place(values[self._share.own], vector)
 
     def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
-        """Begin at rest at displacements u (m), with a history of all points."""
+        """Start at rest at displacements u (m), with the history of all points."""
         if history is not None and history.size:
             history = history[:, self._share.points]
         super().start(u, history)
-        if self.problem.comm.rank:  # the first one has entered all of the energy
+        if self.problem.comm.rank:  # the first process has the whole initial energy
             self.state.sums[:] = 0.0
 
     def take(self, first: int, last: int, stride: int) -> None:
-        """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
+        """Take the steps first .. last - 1, with a sample at each multiple of `stride`."""
         if self._partition[0] != self._known:
             allowed = "has divided the rock otherwise before: run without --resume"
             raise SceneError("mpiexec", "-n", self.problem.comm.size, allowed)
@@ -84,7 +85,7 @@ class SharedLeapfrog(Leapfrog):
         self._add_up(-(-first // stride), -(-last // stride))
 
     def _exchange(self) -> None:
-        """Advance the halo by a step, as the processes have done that step it."""
+        """Advance the halo by a step, with velocities of the processes that own it."""
         state, halo = self.state, slice(self.product.size, None)
         state.v_before[halo] = state.v[halo]
         self._follow(state.v)
@@ -94,13 +95,13 @@ class SharedLeapfrog(Leapfrog):
             past[:] = memory.decay[:, None] * past + memory.gain[:, None] * state.v[halo]
 
     def _add_up(self, first: int, last: int) -> None:
-        """Sum what the processes have read in samples first .. last - 1."""
+        """Sum samples first .. last - 1 over the processes."""
         for rows in self.samples:
             if rows.size and last > first:
                 some = rows[:, first:last]
                 some[:] = sum(self.problem.comm.allgather(some))
 
     def _follow(self, vector: np.ndarray) -> None:
-        """Take the halo of a vector from the processes that step it."""
+        """Update the halo of a vector from the processes that own it."""
         self._forest.bcastBegin(MPI.DOUBLE, vector, vector, MPI.REPLACE)
         self._forest.bcastEnd(MPI.DOUBLE, vector, vector, MPI.REPLACE)

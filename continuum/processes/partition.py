@@ -12,14 +12,14 @@ from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.leapfrog import products_for_steps
 from jointwave.continuum.stepping.product import LANES, SHARED
 
-SAME = 1e-9  # of the domain: by how much places of a node on two processes may differ
+SAME = 1e-9  # difference of a node's places on two processes, over the size of the domain
 
 
 def ranks_of_nodes(body: Body, comm: Any) -> np.ndarray:
-    """Return the process of each node, int array [nodes], the same on all processes of mpi4py's
-    communicator: the lowest of those that its cells are given to.
+    """Return the process of each node [nodes], the lowest rank among its cells; the same on all
+    processes of an mpi4py communicator.
 
-    Raises SceneError where a process would have none, or has another mesh.
+    Raises SceneError if a process would have no node, or has another mesh.
     """
     found, x = None, comm.bcast(body.x)
     same = x.shape == body.x.shape and np.allclose(x, body.x, 0.0, SAME * np.ptp(x))
@@ -37,9 +37,9 @@ def ranks_of_nodes(body: Body, comm: Any) -> np.ndarray:
 
 
 def ranks_of_cells(body: Body, size: int) -> np.ndarray:
-    """Return the process (of `size`) of each cell, int array [cells].
+    """Return the process (of `size`) of each cell [cells].
 
-    Where the blocks share one matrix and each process gets many, none is divided.
+    Blocks that share one matrix stay whole if each process gets many of them.
     """
     unit = np.arange(len(body.block))
     if body.block.max() + 1 >= LANES * size and products_for_steps(body)[0].kind == SHARED:
@@ -53,8 +53,8 @@ def ranks_of_cells(body: Body, size: int) -> np.ndarray:
 
 
 def adjacent_cells(body: Body) -> np.ndarray:
-    """Return pairs of cells, int array [2, n]: those that share a facet, and some for each point of
-    a joint and each node that is one across periodic sides."""
+    """Return pairs of cells [2, n]: those that share a facet, and a pair for each point of a joint
+    and for each node at periodic sides."""
     nodes, cells = compat.cell_nodes(body.space), np.arange(len(body.block))[:, None]
     pairs, at = [compat.neighbours(body.mesh)], np.empty(nodes.max() + 1, np.int64)
     at[nodes] = cells

@@ -1,5 +1,5 @@
-"""A process's share of a problem: complete rows of the matrices for the freedoms that it steps, the
-halo, freedoms of others that these rows need, and all points of joints that act on its freedoms."""
+"""A process's share of a problem: complete matrix rows of its own freedoms, the halo (freedoms of
+other processes in these rows), and all points of joints that act on its freedoms."""
 
 from typing import Any, NamedTuple
 
@@ -15,9 +15,9 @@ from jointwave.joints.ends import HalfSpring
 class Share(NamedTuple):
     """A process's share of a problem.
 
-    problem : with the freedoms of the process first and then the halo. own, halo : int arrays,
-    these freedoms of the whole problem. points : int array, those of the whole; the first ones are
-    counted here.
+    problem : with the owned freedoms first, then the halo. own, halo : these freedoms' numbers in
+    the whole problem. points : their numbers in the whole problem; the first `problem.counted` are
+    recorded here.
     """
 
     problem: Problem
@@ -27,8 +27,8 @@ class Share(NamedTuple):
 
 
 class SomeForces:
-    """Those of a problem's forces that act on freedoms of a process; number : int array [freedoms],
-    of these in its share, -1 of others."""
+    """The part of a problem's forces on the freedoms of a process; number : of each freedom in the
+    share [freedoms], -1 for other freedoms."""
 
     def __init__(self, forces: Any, number: np.ndarray) -> None:
         self.forces, there = forces, number[forces.freedom]
@@ -41,7 +41,7 @@ class SomeForces:
 
 
 def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
-    """Return the share of a process; rank_of : int array [nodes], of each node."""
+    """Return the share of a process; rank_of : process of each node [nodes]."""
     body, dim = problem.body, problem.body.components
     own, (points, counted) = np.flatnonzero(rank_of == rank), _points(problem, rank_of, rank)
     rows, joints = _freedoms(own, dim), JumpOperator(*(one[points] for one in body.joints))
@@ -53,7 +53,7 @@ def share_of(problem: Problem, rank_of: np.ndarray, rank: int) -> Share:
     freedom = np.where(number[:, None] < 0, -1, dim * number[:, None] + np.arange(dim)).ravel()
 
     def local(matrix: csr_matrix) -> csr_matrix:
-        """Return a matrix with the columns of the share, each row in the order that it had."""
+        """Return a matrix with the columns of the share, rows in their original order."""
         entries = matrix.data, freedom[matrix.indices], matrix.indptr
         return csr_matrix(entries, (matrix.shape[0], dim * (len(own) + len(halo))))
 
@@ -82,8 +82,8 @@ def _freedoms(nodes: np.ndarray, dim: int) -> np.ndarray:
 
 
 def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarray, int]:
-    """Return the points that act on nodes of a process, first those that have no node of a lower
-    one, and how many these are."""
+    """Return the points that act on nodes of a process, those without a node of a lower rank first,
+    and the number of these."""
     ranks = rank_of[problem.body.joints.node]
     acts, counts = (ranks == rank).any(axis=1), ranks.min(axis=1) == rank
     first = np.flatnonzero(acts & counts)
@@ -91,8 +91,8 @@ def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarra
 
 
 def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Problem:
-    """Return a problem with what acts on nodes of a process; number, freedom : those of nodes and
-    freedoms in its share, -1 of others."""
+    """Return a problem with the loads and boundaries on nodes of a process; number, freedom : of
+    nodes and freedoms in its share, -1 for others."""
     quiet, held, forces, steady = problem.quiet, problem.held, problem.forces, problem.steady
     there, springs, own = number[quiet.node] >= 0, quiet.springs, freedom[held.freedom] >= 0
 
@@ -112,8 +112,8 @@ def _acting(problem: Problem, number: np.ndarray, freedom: np.ndarray) -> Proble
 def _readings(
     readings: Readings, own: np.ndarray, counted: np.ndarray, constants: bool
 ) -> Readings:
-    """Return what receivers read of some freedoms and of the components of some points; constants :
-    whether what is read at u = 0 counts."""
+    """Return the part of receivers of some freedoms and some components of points; constants :
+    whether to include the values at u = 0."""
     found: dict[str, Any] = {}
     for name, value in readings._asdict().items():
         if isinstance(value, csr_matrix):

@@ -1,7 +1,7 @@
 """Receivers of a body: motion and stress at points, tractions, gap and slip of joints.
 
-Stress is compression positive. On a joint points read the mean of both sides. Joints are read at
-the place on them that is nearest to the receiver, between their points there.
+Stress is compression positive. A point on a joint has the mean of both sides. Joint values are
+interpolated between the joint's points, at the place nearest to the receiver.
 """
 
 import numpy as np
@@ -25,16 +25,16 @@ from jointwave.continuum.space.model import Body, JumpOperator
 from jointwave.continuum.stepping.problem import Readings
 from jointwave.results.stress import stress_components
 
-LEAST = 1.5  # points for each coefficient of a polynomial
-#: Points at a distance s, over the size of the element, count as exp(-FALL s^2 / 2).
+LEAST = 1.5  # least number of points for each coefficient of a polynomial
+#: The weight of a point at a distance s, over the size of the element, is exp(-FALL s^2 / 2).
 FALL = 4.0
-WHOLE = 1e-6  # what shares of a joint's points may lack of one where they surround a place
-LEVEL = 1e-6  # cosine between planes that are one
+WHOLE = 1e-6  # tolerance of the sum of weights of points around a place
+LEVEL = 1e-6  # tolerance of coplanar points: of 1 - cosine, and of the distance over the extent
 
 
 def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) -> Readings:
-    """Return how the receivers of a rock mass, at points and on joints, read its body; stress :
-    [d, d], Pa, compression positive, at u = 0."""
+    """Return the readings of a rock mass's receivers, at points and on joints; stress : at u = 0
+    [d, d], Pa, compression positive."""
     body, dim = found.body, found.body.components
     points, joints = (
         np.array(places, dtype=float).reshape(-1, dim)
@@ -67,8 +67,8 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
 
 
 def read_at(body: Body, x: np.ndarray) -> tuple[Places, np.ndarray, csr_matrix]:
-    """Return points [m, d], m, in their cells, the share of each cell in a point's mean, and the
-    motion there [m d, freedoms]."""
+    """Return the cells of points [m, d], m, the share of each cell in a point's mean, and the
+    matrix of the motion there [m d, freedoms]."""
     at = places_in(body, x)
     share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
     weights = np.einsum("nk,ac->nakc", share[:, None] * at.basis, np.eye(body.components))
@@ -76,15 +76,15 @@ def read_at(body: Body, x: np.ndarray) -> tuple[Places, np.ndarray, csr_matrix]:
 
 
 def pieces_of(body: Body) -> np.ndarray:
-    """Return the connected piece of the body that each cell is of, int array [cells]."""
+    """Return the number of the connected piece of the body of each cell [cells]."""
     nodes = nodes_of_cells(body)
     first = np.broadcast_to(nodes[:, :1], nodes.shape)
     return joined(np.stack([first.ravel(), nodes.ravel()], axis=1), len(body.x))[nodes[:, 0]]
 
 
 def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:
-    """Return the share of each cell [n] in the mean at the point that it is at: pieces that meet
-    there count alike, however many of their cells do."""
+    """Return the share of each cell [n] in the mean at its point: pieces of rock that meet there
+    have equal shares, however many cells they have."""
     pieces = 1 + piece.max(initial=0)
     key = point * pieces + piece
     side, of_cell, cells = np.unique(key, return_inverse=True, return_counts=True)
@@ -95,14 +95,14 @@ def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:
 def _recovered(
     found: SceneBody, x: np.ndarray, at: Places, share: np.ndarray
 ) -> tuple[csr_matrix, csr_matrix]:
-    """Return the stress at points x [m, d], all components of one after the other [m n, freedoms],
-    and that of dashpots by the velocity.
+    """Return the matrices of stress at points x [m, d], [m components, freedoms], from displacement
+    and, for dashpots of the rock, from velocity.
 
     Stress from displacements of order p converges as h^(p + 1) at the Gauss points of cells
-    (Barlow, Int. J. Numer. Meth. Eng. 10, 1976). A polynomial of order p + 1 through those of the
-    cells around a point, by least squares with weights that fall with the distance, has this order
-    everywhere (Zienkiewicz & Zhu, Int. J. Numer. Meth. Eng. 33, 1992). Cells beyond a joint or of
-    other rock do not count. Where there are too few the stress is that of the cell at the point.
+    (Barlow, Int. J. Numer. Meth. Eng. 10, 1976). A polynomial of order p + 1, fitted to them in the
+    cells around a point with weights that fall with distance, has this order everywhere
+    (Zienkiewicz & Zhu, Int. J. Numer. Meth. Eng. 33, 1992). Cells beyond a joint or of other rock
+    are left out; with too few points the stress is that of the cell at the point.
     """
     body, moduli, lag = found.body, found.of_cells("stiffness"), found.of_cells("time_constant")
     nodes, corners = nodes_of_cells(body), compat.cell_corners(body.mesh)
@@ -124,8 +124,8 @@ def _recovered(
 def _patch(
     body: Body, corners: np.ndarray, near: np.ndarray, own: int, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return cells [n], places in them [n, d] and weights [n] of the stresses that make the one at
-    a place in a cell."""
+    """Return cells [n], local places [n, d] and weights [n] of the stresses whose sum is the stress
+    at a place in the cell `own`."""
     kind, order = body.cell.kind, body.cell.order
     simplex = kind in ("triangle", "tetrahedron")
     rule = compat.quadrature(kind, max(2 * order - 2, 1) if simplex else 2 * order - 1)[0]
@@ -147,13 +147,13 @@ def _patch(
 
 
 def nearest_points(found: SceneBody, joints: JumpOperator, places: np.ndarray) -> np.ndarray:
-    """Return the shares of joints' points at the places on joints nearest to these [r, points]."""
+    """Return the weights of joint points [r, points] at the places on joints nearest to these."""
     body, shares = found.body, list[np.ndarray]()
-    nodes, before = nodes_of_cells(body), joints.node[:, 0]  # that normals point away from
+    nodes, before = nodes_of_cells(body), joints.node[:, 0]  # on the side behind the normal
     contacts = contact_at(found.blocks, places, len(found.scene.joint_sets))
     for place, contact in zip(places, contacts, strict=True):
         away = np.linalg.norm(joints.place - place, axis=1)
-        away[joints.column != contact] += found.scene.reach  # tips alone have no points
+        away[joints.column != contact] += found.scene.reach  # a contact may have no points
         nearest = int(away.argmin())
         normal, share = joints.frame[nearest, 0], np.zeros(len(joints.weight))
         off = (joints.place - joints.place[nearest]) @ normal

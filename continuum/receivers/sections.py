@@ -1,12 +1,11 @@
 """Receivers of a pillar: motion on its axis, and the force over sections, along y, then x and z.
 
-A section between two faces of a layer of cells is read by the balance of momentum of the rock up to
-it. The motion w that is 1 up to the near face of the layer, and falls to 0 in it, gives the force
-at that face, w (K u + C u' + M u''), and what is between there and the section takes its share:
-this is as accurate as displacements, whose derivative would lose an order (Wheeler, SIAM J. Numer.
-Anal. 11, 1974, for the flux at a node). At either end it is the force applied there. On a joint a
-section reads its traction, and where no layer of cells has two faces across the pillar, the
-integral of the stress over it.
+The force at a section within a layer of cells follows from the momentum balance of the rock before
+it. A test motion w, 1 up to the near face of the layer and falling to 0 within it, gives the force
+at that face, w (K u + C u' + M u''); the inertia of the rock from there to the section adds to it.
+This is as accurate as displacements, whose derivative would lose an order (Wheeler, SIAM J. Numer.
+Anal. 11, 1974, for the flux at a node). At either end it is the applied force. On a joint it is the
+joint's traction; in a mesh without layers it is the integral of the stress.
 """
 
 from typing import NamedTuple
@@ -25,9 +24,9 @@ from jointwave.continuum.space.evaluation import matrix_of, nodes_of_cells, plac
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.stepping.problem import Readings
 
-NEAR = 1e-9  # of the pillar: when a section is on a joint
-COVERS = 1e-6  # of a section: what joints that it is on may leave uncovered
-PER_SIDE = 8  # Gauss points across a section that the mesh does not follow
+NEAR = 1e-9  # distance, over the pillar's length, at which a section is on a joint
+COVERS = 1e-6  # fraction of a section that joints may leave uncovered
+PER_SIDE = 8  # Gauss points along each axis of a section in a mesh without layers
 CURL = np.array([[[0, 0, 0], [0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
                  [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]])  # fmt: skip
 
@@ -38,9 +37,8 @@ def extent_of(scene: Scene, body: Body) -> float:
 
 
 def readings_of_pillar(scene: Scene, found: SceneBody, stress: np.ndarray | None) -> Readings:
-    """Return how a pillar's receivers read its body: motion, then rotation; stress over sections,
-    that of rock by itself and that of joints among tractions. stress : [d, d], Pa, compression
-    positive, at u = 0."""
+    """Return the readings of a pillar's receivers: motion, then rotation; stress at sections, in
+    rock as stress and on joints as traction. stress : at u = 0 [d, d], Pa, compression positive."""
     body, force, axes = found.body, sections(found, scene.record.stress), along_first(found.body)
     area, constant = scene.pillar.area / extent_of(scene, body), np.zeros(force.elastic.shape[0])
     if stress is not None:
@@ -60,8 +58,8 @@ def readings_of_pillar(scene: Scene, found: SceneBody, stress: np.ndarray | None
 
 
 class Sections(NamedTuple):
-    """Force over sections [sections d, freedoms], N, d directions of each: elastic u + viscous u'
-    + inertia u''; contact : [sections d, points d] of the forces of the joint that one is on."""
+    """Forces over sections, N: elastic u + viscous u' + inertia u'', each [sections d, freedoms],
+    plus contact [sections d, points d] times the forces of joints."""
 
     elastic: csr_matrix
     viscous: csr_matrix
@@ -70,19 +68,19 @@ class Sections(NamedTuple):
 
 
 def along_first(body: Body) -> list[int]:
-    """Return the components of the motion along y, then x, then z."""
+    """Return the indices of the components along y, then x, then z."""
     return [0] if body.components == 1 else [1, 0, 2][: body.components]
 
 
 def axis_of(body: Body) -> int:
-    """Return which coordinate of the mesh runs along the pillar."""
+    """Return the index of the coordinate along the pillar."""
     return body.x.shape[1] // 2
 
 
 def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
-    """Return the motion of places on the axis [m d, freedoms] and, in two and three dimensions, the
-    rotation about x, y, z there, half the curl of the motion [m 3, freedoms]; on a joint both are
-    the mean of its sides."""
+    """Return the matrix of the motion at places on the axis [m d, freedoms] and, in two and three
+    dimensions, of the rotation about x, y, z, half the curl [m 3, freedoms]; on a joint both are
+    means of its sides."""
     x = np.zeros((len(places), body.x.shape[1]))
     x[:, axis_of(body)] = places
     at, share, motion = read_at(body, x)
@@ -95,7 +93,7 @@ def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
 
 
 def sections(found: SceneBody, places: list[float]) -> Sections:
-    """Return the receivers of places along the pillar."""
+    """Return the sections at places along the pillar, m."""
     body = found.body
     none = 3 * (csr_matrix((body.components, body.mass.size)),)
     parts = [tuple(one[:0] for one in (*none, _contact(body, on_joint(body, np.inf))))]
@@ -108,8 +106,8 @@ def sections(found: SceneBody, places: list[float]) -> Sections:
 
 
 def on_joint(body: Body, y: float) -> np.ndarray:
-    """Return which points of joints a section at y is on, bool [points]: none where they do not
-    cover it, as those of an inclined joint."""
+    """Return which points of joints lie on a section at y, bool [points]; none if they do not cover
+    it, as for an inclined joint."""
     along, extent = axis_of(body), np.ptp(compat.cell_corners(body.mesh), axis=(0, 1))
     on = np.abs(body.joints.place[:, along] - y) <= NEAR * extent[along]
     covered = body.joints.weight[on].sum() / np.delete(extent, along).prod()
@@ -117,7 +115,7 @@ def on_joint(body: Body, y: float) -> np.ndarray:
 
 
 def _contact(body: Body, on: np.ndarray) -> csr_matrix:
-    """Return the sum of the forces of points of joints, along y, x and z [d, points d]."""
+    """Return the matrix that sums forces of joint points `on`, along y, x and z [d, points d]."""
     size = body.components
     turned = body.joints.frame.transpose(0, 2, 1)[:, along_first(body)]
     weights = on[:, None, None] * turned
@@ -125,8 +123,8 @@ def _contact(body: Body, on: np.ndarray) -> csr_matrix:
 
 
 def _layer(body: Body, y: float) -> np.ndarray | None:
-    """Return the cells of the layer that a section is in, of two the first; None where these have
-    no faces across the pillar."""
+    """Return the cells of the layer that contains a section (of two layers the first); None if
+    their faces do not lie across the pillar."""
     corners = compat.cell_corners(body.mesh)[:, :, axis_of(body)]
     low, high = corners.min(axis=1), corners.max(axis=1)
     slack = NEAR * float(np.ptp(corners))
@@ -140,7 +138,7 @@ def _layer(body: Body, y: float) -> np.ndarray | None:
 
 
 def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_matrix, ...]:
-    """Return a section's force by the momentum of the part of a layer before it."""
+    """Return a section's force from the momentum balance of the rock before it."""
     body = found.body
     kind, along, order = body.cell.kind, axis_of(body), body.cell.order
     corners = compat.cell_corners(body.mesh)[layer]
@@ -171,7 +169,7 @@ def _by_momentum(found: SceneBody, layer: np.ndarray, y: float) -> tuple[csr_mat
 
 
 def _by_stress(found: SceneBody, y: float) -> tuple[csr_matrix, ...]:
-    """Return a section's force as the integral of the stress over it, by Gauss points."""
+    """Return a section's force as the integral of the stress, by Gauss points."""
     body = found.body
     at, weight = np.polynomial.legendre.leggauss(PER_SIDE)
     low, high = body.x.min(axis=0), body.x.max(axis=0)

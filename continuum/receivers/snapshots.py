@@ -22,13 +22,12 @@ from jointwave.results.subcells import KINDS, linear_cells
 
 
 class StressOfCells:
-    """Stress at the centres of the linear cells that cells are divided into.
+    """Stress at the centres of the linear subcells of cells.
 
-    slopes : of the functions of nodes at the centres in the reference cell [parts, nodes, d].
-    inverse : dX/dx of cells there [cells, parts, d, d], 1/m. moduli : float array [cells, n,
-    components, d], Pa: n components of the stress by the gradient of the displacement, compression
-    positive. lag : time constant of the dashpots of the rock [cells, 1, 1], s; None without any.
-    constant : float array [n], Pa, at u = 0.
+    slopes : of the shape functions there, in the reference cell [parts, nodes, d]. inverse : dX/dx
+    there [cells, parts, d, d], 1/m. moduli : n components of the stress per displacement gradient,
+    compression positive [cells, n, components, d], Pa. lag : time constant of the rock's dashpots
+    [cells, 1, 1], s; None without. constant : stress at u = 0 [n], Pa.
     """
 
     def __init__(self, found: SceneBody, parts: np.ndarray, points: np.ndarray) -> None:
@@ -49,7 +48,7 @@ class StressOfCells:
         self.constant = np.array([0.0 if given is None else given.tensor[one] for one in pairs])
 
     def of(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Return the stress [cells * parts, n], Pa, of displacements and velocities [freedoms]."""
+        """Return the stress [cells * parts, n], Pa, from displacement and velocity [freedoms]."""
         moved = u.reshape(-1, self.size)[self.nodes]
         if self.lag is not None:
             moved = moved + self.lag * v.reshape(-1, self.size)[self.nodes]
@@ -59,9 +58,9 @@ class StressOfCells:
 
 
 class RockRecorder(SnapshotRecorder):
-    """The rock at every snapshot of a scene; raises SceneError for too many, or too large ones.
+    """Records the rock at every snapshot; raises SceneError for too many or too large ones.
 
-    steps : which have taken that of a sample last when it is recorded.
+    steps : must have just taken the step of a sample when it is recorded.
     """
 
     def __init__(self, scene: AnyScene, found: SceneBody, steps: Leapfrog | Implicit) -> None:
@@ -69,7 +68,7 @@ class RockRecorder(SnapshotRecorder):
         kind, nodes = body.cell.kind, compat.cell_nodes(body.space)
         points = body.cell.element.points
         own = np.arange(len(points))
-        if kind in SIMPLEX and body.cell.order == 2:  # a full lattice, without nodes of bubbles
+        if kind in SIMPLEX and body.cell.order == 2:  # a full lattice, without bubble nodes
             own = np.flatnonzero(np.isclose(2 * points, np.rint(2 * points)).all(axis=1))
         parts = linear_cells(kind, points[own])
         self.stress = StressOfCells(found, parts, points[own])
@@ -77,7 +76,7 @@ class RockRecorder(SnapshotRecorder):
         points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
         cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
         block = np.repeat(body.block, len(parts))
-        if scene.is_column:  # cells of a layer are of the blocks beside it
+        if scene.is_column:  # cells of a layer belong to the adjacent blocks
             height = points[cells][..., points.shape[1] // 2].mean(axis=1)
             block = np.searchsorted(calibrate(scene).contact_y, height) - 1
         count, values = len(self.node), len(cells) * len(self.stress.constant)

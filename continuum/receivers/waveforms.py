@@ -1,4 +1,4 @@
-"""The waveforms of a run as a result of its kind of scene."""
+"""The waveforms of a run as a dataset, for pillars and rock masses."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -16,7 +16,7 @@ from jointwave.results.dataset import TERMS, dataset
 def recorded(
     scene: AnyScene, problem: Problem, samples: Samples, times: np.ndarray, about: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return the samples at these times, the first ones, as a result with attributes."""
+    """Return the samples at these times, from the first on, as a result with attributes."""
     samples = Samples(*(one[:, : len(times)] for one in samples))
     if scene.is_column:
         waves = of_pillar(problem, samples)
@@ -27,8 +27,8 @@ def recorded(
 
 
 def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
-    """Return what was recorded of a pillar by name, as `dataset` takes it; components absent in two
-    dimensions are zero."""
+    """Return the waveforms of a pillar by the names of `dataset`; z components are zero in two
+    dimensions."""
     dim, turns = problem.body.components, problem.body.x.shape[1] > 1
     whole, places = 3 if dim > 1 else 1, len(samples.velocity) // (dim + 3 * turns)
     force = vectors(samples.stress + samples.traction, dim, whole)
@@ -45,15 +45,15 @@ def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
 
 
 def vectors(rows: np.ndarray, size: int, whole: int = 0) -> np.ndarray:
-    """Return vectors [places, samples, size] of rows with all components of a place together, up to
-    a whole size with zeros."""
+    """Return vectors [places, samples, size] from rows ordered by place, then component; zeros fill
+    up to `whole` components."""
     found = rows.reshape(-1, size, rows.shape[1]).swapaxes(1, 2)
     return np.pad(found, ((0, 0), (0, 0), (0, max(0, whole - size))))
 
 
 def ledger_of(scene: AnyScene, problem: Problem, samples: Samples) -> dict[str, Any]:
-    """Return the energies that the scene has, and which they are, as `dataset` takes them. What
-    prestressed rock gives off where walls of openings give way counts with what it stores."""
+    """Return the energies of the scene's effects and their terms, as arguments of `dataset`. The
+    work of prestressed rock on walls of openings counts as elastic energy."""
     parts, found = problem.parts, samples.energy.copy()
     if not found.size:
         return {}
@@ -68,10 +68,8 @@ def ledger_of(scene: AnyScene, problem: Problem, samples: Samples) -> dict[str, 
 
 
 def of_rock_mass(dim: int, samples: Samples) -> dict[str, np.ndarray]:
-    """Return what was recorded of a rock mass by name, as `dataset` takes it.
-
-    Motion counts from the state at the start. Without joints nothing is known of them.
-    """
+    """Return the waveforms of a rock mass by the names of `dataset`; displacement, gap and slip are
+    relative to the start."""
     displacement, jump = (
         vectors(rows - rows[:, :1], dim) for rows in (samples.displacement, samples.jump)
     )
