@@ -1,5 +1,4 @@
-"""Bands of an ensemble's waveforms: the median of all members, and from the 5th to the 95th
-percentile at every time."""
+"""Bands of an ensemble's waveforms: the median and the 5th to 95th percentile at every time."""
 
 from typing import Any
 
@@ -12,16 +11,16 @@ from jointwave.compare.figures.export import chart, set_heading
 from jointwave.compare.figures.style import UNITS, style
 from jointwave.compare.misfit.places import Place, waveforms
 
-SEEN = ("stress", "velocity", "traction", "gap", "slip")  # of a result
-MOST, ACROSS, HEIGHT = 12, 2, 1.6  # waveforms drawn, side by side, and inches of each
-FAINT = 1e-6  # of the largest of its quantity: a waveform of round-off
+SEEN = ("stress", "velocity", "traction", "gap", "slip")  # quantities drawn
+MOST, ACROSS, HEIGHT = 12, 2, 1.6  # most waveforms, number side by side, height of each in inches
+FAINT = 1e-6  # of the largest waveform of its quantity; smaller waveforms are round-off
 
 
 def draw(results: dict[str, xr.Dataset]) -> Figure | None:
-    """Return the bands of at most MOST waveforms, those that exceed round-off; None without any.
+    """Return the bands of at most MOST waveforms that exceed round-off; None if there are none.
 
-    results : mean and percentiles of every waveform by the name of the solver, with `statistic` as
-    their first dimension.
+    results : mean and percentiles of every waveform by name of the solver, with `statistic` as the
+    first dimension.
     """
     every: dict[Place, dict[str, list[np.ndarray]]] = {}
     for name in in_order(results):

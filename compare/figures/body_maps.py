@@ -1,4 +1,4 @@
-"""A quantity over a body, as it is seen, of the snapshots of one result or more."""
+"""Maps of a quantity over a body in side view, from the snapshots of results."""
 
 import json
 from collections.abc import Sequence
@@ -20,20 +20,21 @@ from jointwave.compare.figures.animation.snapshots import Quantity
 from jointwave.compare.figures.drawing.plane import seen
 from jointwave.results.snapshots import snapshots_of
 
-#: Tables that decide no geometry, and a load over time instead of one whose file is not at hand.
+#: Tables that do not affect geometry, and a load to replace one whose file may be missing.
 ASIDE = ("waves", "loads", "boundaries", "gravity", "prestress", "expect")
 LOAD = dict.fromkeys(("cycles", "rise", "decay", "file"))
 LOAD |= {"shape": "sine", "amplitude": 1.0, "period": 1.0}
-PIECES = 150  # of joints, across the body
-CLOSE = 1e-6  # of the body: beside a joint, and between two sizes of one body
+PIECES = 150  # pieces of a joint as long as the body
+CLOSE = 1e-6  # of the body's size: offset from a joint, and tolerance between sizes of bodies
 
 
 class Map(NamedTuple):
-    """A quantity over a body as it is seen, places in m to the right and up.
+    """A map of a quantity over a body in side view; coordinates (right, up), m.
 
-    corners : of the faces [faces, corners, 2]. joints : in pieces [pieces, 2, 2]. values : of the
-    faces or, for slip, of the joints' pieces, in the unit of the quantity. time : s, of the
-    snapshot; None for a peak over all. axes : their names. stretch : of what is up.
+    corners : of the faces [faces, corners, 2]. joints : ends of pieces of joints [pieces, 2, 2].
+    values : of the faces or, for slip, of the pieces of joints, in the unit of the quantity.
+    time : of the snapshot, s; None for the peak over all. axes : their names. stretch : factor of
+    the upward coordinate.
     """
 
     corners: np.ndarray
@@ -46,14 +47,14 @@ class Map(NamedTuple):
 
     @property
     def sizes(self) -> np.ndarray:
-        """The areas (m2) of the faces, or lengths (m) of the joints' pieces, that have values."""
+        """The areas of the faces, m2, or for slip the lengths of the pieces of joints, m."""
         if self.quantity == snapshots.SLIP:
             return np.linalg.norm(self.joints[:, 1] - self.joints[:, 0], axis=1)
         return shapely.area(shapely.polygons(self.corners))
 
 
 def scene_of(result: xr.Dataset) -> AnyScene:
-    """Return the scene of a result, without what acts on it."""
+    """Return the scene of a result, without its loads, waves and boundaries."""
     tables = json.loads(result.attrs["scene"])
     tables = {key: value for key, value in tables.items() if key not in ASIDE}
     tables["record"]["fields"] = None
@@ -68,7 +69,7 @@ def scene_of(result: xr.Dataset) -> AnyScene:
 def maps_of(
     scene: AnyScene, results: Sequence[xr.Dataset], quantity: str, time: float | None = None
 ) -> dict[str, Map]:
-    """Return the maps of results of one body by their names; raises SceneError as `plot_map`."""
+    """Return the maps of results of the same body, by name; raises SceneError as `plot_map`."""
     stress = snapshots.quantities_of(scene)["stress"]
     known = {"ppv": snapshots.PEAK, "speed": snapshots.SPEED}
     known |= {"stress": stress, "slip": snapshots.SLIP}
@@ -94,7 +95,8 @@ def maps_of(
 
 
 def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | None) -> Map:
-    """Return the map of a result's snapshots, of the one nearest to a time."""
+    """Return the map of a result's snapshot nearest to a time (None: the one with the largest
+    values); for the peak over all snapshots."""
     s = snapshots_of(result)
     if s is None or (s.stress is None and quantity == snapshots.quantities_of(scene)["stress"]):
         why = "is needed for a map: the result has no snapshots"
@@ -107,7 +109,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
             why = "is of joints along which something moves; this body has none"
             raise SceneError(scene.title, "map", "slip", why)
         if "field_slip" in result:
-            # Rigid blocks have it without the strain of the rock, which parts them as well.
+            # Slip of rigid blocks; displacement jumps would include the strain of the rock.
             lines = shapely.linestrings(result["field_joints"].values[..., :2])
             middle = shapely.points(joints.mean(axis=1))
             nearest = shapely.STRtree(lines).query_nearest(middle, all_matches=False)[1]
@@ -130,7 +132,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
 
 
 def _joints(scene: AnyScene) -> np.ndarray:
-    """Return the joints of a scene as they are seen, in pieces [n, 2, 2], m."""
+    """Return the joints of a scene in side view, cut into pieces [n, 2, 2], m."""
     blocks, turn = seen(scene)
     ends = blocks.contacts.ends[blocks.contacts.joint_set >= 0][..., turn]
     longest = float(np.ptp(blocks.outlines.corners, axis=0).max()) / PIECES
@@ -140,8 +142,8 @@ def _joints(scene: AnyScene) -> np.ndarray:
 
 
 def _slip(body: Body, corners: np.ndarray, joints: np.ndarray) -> np.ndarray:
-    """Return the size of the displacement along joints of one side against the other, m [snapshots,
-    pieces]; that of a face is read as linear between its corners."""
+    """Return the magnitude of slip [snapshots, pieces], m: the tangential displacement jump between
+    both sides of a joint, with displacements linear over each face."""
     along = joints[:, 1] - joints[:, 0]
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     normal = np.stack([-along[:, 1], 0 * along[:, 0], along[:, 0]], axis=1)  # right, away, up
@@ -159,13 +161,13 @@ def _slip(body: Body, corners: np.ndarray, joints: np.ndarray) -> np.ndarray:
 
 
 def _nearest(corners: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return the faces that points [n, 2] are in."""
+    """Return the indices of the faces that contain points [n, 2]."""
     tree = shapely.STRtree(shapely.polygons(corners))
     return tree.query_nearest(shapely.points(at), all_matches=False)[1]
 
 
 def difference(one: Map, other: Map) -> Map:
-    """Return the second map less the first, on the faces of the one that has more."""
+    """Return the second map minus the first, on the faces of the finer map."""
     if one.quantity == snapshots.SLIP:
         return one._replace(values=other.values - one.values)
     finer = max(other, one, key=lambda of: len(of.corners))

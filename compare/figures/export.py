@@ -1,5 +1,5 @@
-"""Figures: empty ones, charts of axes in rows over one abscissa with a legend above, and the files
-of each: its drawings, SVG, PDF and PNG, and its numbers, CSV."""
+"""Empty figures, charts of axes with a common abscissa, and the files of a figure: drawings in SVG,
+PDF and PNG, numbers in CSV."""
 
 import io
 from collections.abc import Iterator
@@ -20,14 +20,14 @@ from jointwave.compare.figures.style import RC, SIZE
 from jointwave.compare.runs.output import write, write_csv
 
 DIGITS = 6  # of the numbers behind a figure
-HEADING, ABSCISSA, LINE = 0.3, 0.45, 0.19  # inches above axes, below the lowest, and of a legend's
+HEADING, ABSCISSA, LINE = 0.3, 0.45, 0.19  # inches of a heading, the abscissa, a line of legend
 BESIDE = 0.8  # inches beside axes
-LETTER, HANDLE = 0.6, 7.0  # over the size of letters: their width, and that of a legend's line
-SMALLER = 0.76  # of the height of axes, for more than two rows
+LETTER, HANDLE = 0.6, 7.0  # width of a letter and of a legend's handle, over the font size
+SMALLER = 0.76  # factor of the height of axes in more than two rows
 
 
 class ShownFigure(Figure):
-    """A figure that a notebook shows where a cell ends with it, like those of pyplot."""
+    """A figure that a notebook shows at the end of a cell, like pyplot's."""
 
     def _repr_png_(self) -> bytes:
         self.savefig(found := io.BytesIO(), format="png")
@@ -36,7 +36,7 @@ class ShownFigure(Figure):
 
 @contextmanager
 def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
-    """Yield an empty figure, as wide as matplotlib's settings `rc` have it; height : inches."""
+    """Yield an empty figure, with the width of matplotlib's settings `rc`; height : inches."""
     with matplotlib.rc_context(rc):
         width = rcParams["figure.figsize"][0]
         figure = ShownFigure((width, height), layout="constrained")
@@ -48,11 +48,11 @@ def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
 def chart(
     rows: int, columns: int, heights: list[float], abscissa: str, rc: dict[Any, Any] = RC
 ) -> Iterator[tuple[Figure, np.ndarray]]:
-    """Yield a figure and its axes [row, part, column], all over one abscissa.
+    """Yield a figure and its axes [row, part, column] with a common abscissa.
 
-    heights : of the parts of a row, one below the other: inches where letters have the page's size.
-    rc : matplotlib's settings. Axes left empty are hidden, the abscissa is labelled below the
-    lowest of each column, and the legend has every label once.
+    heights : of the parts of a row, from top to bottom, in inches for the page's font size. rc :
+    matplotlib's settings. Empty axes are hidden, the abscissa is labelled below the lowest axes of
+    each column, and the legend has every label once.
     """
     heights = [heights[0] * (SMALLER if rows > 2 else 1.0), *heights[1:]]
     with blank(1.0, rc=rc) as figure:
@@ -89,7 +89,7 @@ def _add_legend(figure: Figure) -> int:
 
 
 def set_heading(ax: Axes, heading: str, small: bool = False) -> None:
-    """Set the heading of axes, in as many lines as their width needs."""
+    """Set the heading of axes, wrapped to their width."""
     columns = ax.get_subplotspec().get_gridspec().ncols  # type: ignore[union-attr]
     width = rcParams["figure.figsize"][0] / columns - BESIDE
     size = rcParams["font.size"] * (5 / 6 if small else 1.0)
@@ -101,8 +101,8 @@ class SceneFigure(NamedTuple):
     """A figure of a scene and its solutions.
 
     name : stem of its files, unique on the page ("fig-03-spectra"). title : a heading. caption :
-    contents and method in one or two sentences. table : the drawn data, tidy; columns carry their
-    units, no index. folded : whether it is in a section of the page that is closed at first.
+    contents and method in one or two sentences. table : the drawn data, without index; headers give
+    units. folded : whether it is in a collapsed section of the page.
     """
 
     name: str
@@ -114,9 +114,9 @@ class SceneFigure(NamedTuple):
 
 
 class Drawn(NamedTuple):
-    """A written figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv.
+    """The files of a figure: NAME.svg, NAME.pdf and, if requested, NAME.png; its numbers NAME.csv.
 
-    caption : on the page. folded : whether it stands in a fold there.
+    caption, folded : see `SceneFigure`.
     """
 
     name: str
@@ -131,7 +131,7 @@ class Drawn(NamedTuple):
 
     @property
     def drawings(self) -> list[Path]:
-        """The files of its drawings, if it also has pixels."""
+        """The files of its drawings, PNG included."""
         return [self.file(kind) for kind in ("svg", "pdf", "png")]
 
 
@@ -143,10 +143,7 @@ def save(
     table: DataFrame | None = None,
     png: bool = True,
 ) -> Drawn:
-    """Write a figure's files; without a table the caller writes the CSV.
-
-    png : also as pixels.
-    """
+    """Write a figure's files; without a table the caller writes the CSV. png : also write PNG."""
     drawn = Drawn(name, title, folder)
     if table is not None:
         write_csv(drawn.file("csv"), table, DIGITS)
@@ -157,8 +154,8 @@ def save(
 
 
 def write_drawing(path: Path, figure: Figure, title: str = "", rc: dict[Any, Any] = RC) -> Path:
-    """Write a figure in the format of the suffix, .svg, .pdf or .png; the same figure is the same
-    file. It is created in memory: matplotlib's writers fail in many ways on a full disk."""
+    """Write a figure in the format of the suffix, .svg, .pdf or .png. Equal figures give equal
+    files. It is created in memory: matplotlib's writers fail in many ways on a full disk."""
     kind, content = path.suffix[1:], io.BytesIO()
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind, {})
     with matplotlib.rc_context(rc | {"svg.hashsalt": title}):

@@ -1,5 +1,5 @@
-"""Waveforms of a scene's variants at their receivers, of all solutions: a panel for each that
-moves; and what variants are called."""
+"""Panels with the waveforms of all solutions at the receivers of a scene's variants, and the
+variants' names."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from jointwave.compare.misfit.ranking import finest
 from jointwave.compare.misfit.weight import FAINT
 
 FORCES, MOTION, ROTATION = ("stress", "shear"), ("velocity",), ("rotation",)
-#: By key of [record] the quantities at its receivers, of which the first group that moves is shown.
+#: Groups of quantities for each key of [record]; the first group that moves is shown.
 SHOWN = {
     "stress": (FORCES,),
     "velocity": (MOTION, ROTATION),
@@ -27,11 +27,11 @@ SHOWN = {
 
 
 class Panel(NamedTuple):
-    """One place in one variant, with its waveforms in SI over time (s).
+    """The waveforms, SI over time (s), at one place in one variant.
 
-    recorded, curves : of every solution, a column each; curves are less their static state. given :
-    external curves by file, their own samples. reference : the solution that residuals are taken
-    from, "" if none resolves the scene.
+    recorded, curves : of every solution, a column each, with and without its static state. given :
+    external curves by file, at their own times. reference : the solution from which residuals are
+    taken, "" if none resolves the scene.
     """
 
     comparison: Comparison
@@ -53,7 +53,7 @@ class Panel(NamedTuple):
         return UNITS[self.place.quantity]
 
     def column(self, name: str, per: str = "") -> str:
-        """Return the header of a curve in a table; per : what its unit is divided by."""
+        """Return the header of a curve in a table; per : appended to its unit, such as "/Hz"."""
         curve = " | ".join(filter(None, (name, self.place.heading, self.variant)))
         return f"{curve} ({self.unit}{per})"
 
@@ -64,7 +64,7 @@ class Panel(NamedTuple):
 
     @property
     def residuals(self) -> pd.DataFrame:
-        """Each of `curves` minus that of the reference, which itself has no residual."""
+        """Each of `curves`, except the reference, minus the reference; empty without one."""
         if self.reference not in self.curves:
             return pd.DataFrame()
         rest = self.curves.drop(columns=self.reference)
@@ -72,14 +72,14 @@ class Panel(NamedTuple):
 
     @property
     def largest_residual(self) -> float:
-        """The largest of them over the largest value; 0 without a reference or without motion."""
+        """The largest residual over the largest value; 0 without a reference or motion."""
         rest, peak = self.residuals.abs().max().max(), self.curves.abs().max().max()
         return float(rest / peak) if rest > 0 else 0.0
 
 
 def variant_names(comparisons: list[Comparison]) -> list[str]:
-    """Return the variants' names; the base scene is named by what its variants change, where that
-    has words; alone it is the "base scene"."""
+    """Return the variants' names; an unnamed base scene is named by the settings that its variants
+    change if `_words` knows them, else "base scene"."""
     base, *variants = (comparison.scene for comparison in comparisons)
     changed: list[str] = []
     if base.is_column:
@@ -95,7 +95,7 @@ def named(comparisons: list[Comparison]) -> list[tuple[str, Comparison]]:
 
 
 def _words(scene: Any) -> dict[str, str]:
-    """Return what variants of pillars usually change, in words."""
+    """Return the settings that variants of pillars usually change, in words."""
     ratio = scene.joints.damping_ratio
     return {
         "damping": "undamped" if ratio is None else f"ζ = {ratio:g}",
@@ -109,16 +109,16 @@ def _words(scene: Any) -> dict[str, str]:
 def panels(comparisons: list[Comparison]) -> list[list[Panel]]:
     """Return the panels of every variant, one list each.
 
-    At each receiver there is one for every component that is not faint compared with the largest:
-    of stress and shear, of velocity, of rotation if nothing is displaced, of traction at joints.
+    Each receiver has a panel for every component that is not faint against the largest: of stress
+    and shear; of velocity, or rotation if nothing translates; of traction at joints.
     """
-    is_alone = len(comparisons) == 1  # it needs no name but its own
+    is_alone = len(comparisons) == 1  # a single variant keeps its own name
     names = [comparisons[0].scene.name] if is_alone else variant_names(comparisons)
     return [[*_panels(one, name)] for one, name in zip(comparisons, names, strict=True)]
 
 
 def in_rows(comparisons: list[Comparison], across: int = 2) -> list[list[Panel]]:
-    """Return the panels in rows of at most `across`; each variant begins a row."""
+    """Return the panels in rows of at most `across`; each variant starts a new row."""
     rows = panels(comparisons)
     return [row[i : i + across] for row in rows for i in range(0, len(row), across)]
 
@@ -145,7 +145,7 @@ def _panels(comparison: Comparison, variant: str) -> Iterator[Panel]:
 
 
 def _frame(results: dict[str, xr.Dataset], place: Place) -> pd.DataFrame:
-    """Return the waveforms that results have at a place, a column each over time (s)."""
+    """Return the waveforms of results at a place, a column each over time (s)."""
     waves = {name: place.waveform(one) for name, one in results.items()}
     times = {name: np.round(one.time.values, 12) for name, one in results.items()}
     return pd.DataFrame({n: pd.Series(w, times[n]) for n, w in waves.items() if w is not None})
@@ -164,10 +164,11 @@ def peaks(
     receiver: int | slice = slice(None),
     least: float = 0.0,
 ) -> dict[tuple[str, str], float]:
-    """Return the largest magnitude by quantity and component, SI, of the first group of quantities
-    that moves; without motion, of the last one recorded.
+    """Return the largest magnitude, SI, by quantity and component, of the first group of quantities
+    that moves; if none moves, of the last recorded group.
 
-    results : the first that has a quantity counts. least : smaller values count as no motion.
+    results : a quantity is read from the first result that has it. least : smaller values count as
+    no motion.
     """
     found: dict[tuple[str, str], float] = {}
     for group in groups:
@@ -183,11 +184,8 @@ def peaks(
 
 
 def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every drawn waveform as recorded, including its static state, in SI: time first, one
-    column per curve, its unit in the header.
-
-    Variants may be sampled at different times; cells without a sample are empty.
-    """
+    """Return every drawn waveform as recorded, with its static state, in SI: time first, then a
+    column per curve with its unit in the header. Cells without a sample are empty."""
     columns = {
         panel.column(str(name)): curve
         for row in panels(comparisons)
@@ -198,5 +196,5 @@ def curve_table(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def table_of(columns: Any, index: str) -> pd.DataFrame:
-    """Return curves by header with their common index, which is named, in front of them."""
+    """Return a table of curves by header; its first column is their common index, named `index`."""
     return pd.DataFrame(columns).rename_axis(index).reset_index()

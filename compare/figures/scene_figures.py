@@ -19,7 +19,7 @@ from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.ranking import own_exact
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
 
-HEIGHT, WIDTHS = 3.2, (1.0, 1.3)  # inches of the lead, and shares of the scene and waveform
+HEIGHT, WIDTHS = 3.2, (1.0, 1.3)  # height of the lead, inches; width ratios of scene and waveform
 
 
 def figures_of(
@@ -47,7 +47,7 @@ def figures_of(
 
 
 def lead_figure(name: str, panel: Panel) -> SceneFigure:
-    """Return the scene of a panel beside the panel."""
+    """Return the figure at the head of a page: the scene of a panel beside the panel."""
     with blank(HEIGHT) as figure:
         left, right = figure.subplots(1, 2, width_ratios=WIDTHS)
         sketch_of(panel.comparison.scene)._replace(size="").draw(left)
@@ -61,15 +61,15 @@ def lead_figure(name: str, panel: Panel) -> SceneFigure:
 
 
 SECTIONS, TIMES = 60, 240  # largest numbers of intervals between sections and between samples
-ALONG = "-along-pillar"  # in the names of files of these results
-FEWEST = 8  # blocks; fewer show no wave
+ALONG = "-along-pillar"  # suffix of the names of these results' files
+FEWEST = 8  # blocks; with fewer no wave is visible
 
 
 def along_pillar(scene: AnyScene, stored: ResultFolder = NOWHERE) -> dict[str, xr.Dataset]:
     """Return results by name at joints or blocks all along the pillar, at some 240 times.
 
-    Results of the engines, each run as in the comparison, and of the exact solution of each one's
-    own model. Empty if the pillar has too few blocks to show a wave, and for a rock mass.
+    These are the engines, run as in the comparison, and the exact solution of each engine's own
+    model. Empty for a rock mass, or if the pillar has too few blocks to show a wave.
     Raises the errors of `compare.engines.solve`.
     """
     found = {}
@@ -80,7 +80,7 @@ def along_pillar(scene: AnyScene, stored: ResultFolder = NOWHERE) -> dict[str, x
 
 
 def runs_along(scene: AnyScene) -> tuple[list[str], AnyScene]:
-    """Return the solvers of `along_pillar`, and the scene that they solve."""
+    """Return the names of the solvers of `along_pillar`, and their scene."""
     if not scene.is_column or scene.block_count < FEWEST:
         return [], scene
     wide = recorded_along(scene)
@@ -91,15 +91,15 @@ def runs_along(scene: AnyScene) -> tuple[list[str], AnyScene]:
 
 
 def recorded_along(scene: Scene) -> Scene:
-    """Return the scene with receivers at the start, every k-th joint and the end of the pillar or,
-    if it records only velocities, at the centres of blocks; samples and steps are unchanged."""
+    """Return the scene with receivers at the start, every k-th joint and the end of the pillar; if
+    it records only velocities, at centres of blocks. Samples and steps are unchanged."""
     count, p = scene.block_count, calibrate(scene)
     contacts = [*range(0, count, -(-count // SECTIONS)), count]
     sections, points = p.contact_y[contacts].tolist(), []
     if scene.record.velocity and not scene.record.stress:
         sections, points = [], p.centre_y[contacts[:-1]].tolist()
     elif scene.load.arm is not None:
-        # A couple about the axis strains no section; rotation is recorded with the velocity.
+        # Torsion gives no stress at a section; rotation is recorded with the velocity.
         points = sections
     update = {"stress": sections, "velocity": points, "fields": None}
     return scene.model_copy(update={"record": scene.record.model_copy(update=update)})

@@ -1,9 +1,9 @@
-"""Styles and units of figures: one hue per model, one pattern per kind of solution; drawn numbers
-in a multiple of the unit suited to their size.
+"""Styles and units of figures: one hue per model, one line pattern per kind of solution, and
+multiples of units suited to the size of numbers.
 
-Engines are wide, light and solid, nested by width so that none hides another where they coincide;
-exact solutions are thin, dark and dashed over them. Hues are those of Okabe & Ito (2008), safe for
-all kinds of colour blindness.
+Engines are wide, light, solid lines of different widths, so that none hides another; exact
+solutions are thin, dark, dashed lines over them. Hues are those of Okabe & Ito (2008),
+distinguishable with any colour blindness.
 """
 
 from pathlib import Path
@@ -15,8 +15,8 @@ from jointwave.compare.engines import names, solver
 from jointwave.compare.solvers.record import Line, thin
 from jointwave.results.labels import QUANTITIES, label
 
-#: Styles of external curves, in order of files: black and grey, which no solution has, drawn
-#: between engines and exact solutions.
+#: Styles of external curves, in order of files: black and grey, used by no solution, drawn between
+#: engines and exact solutions.
 GIVEN = (
     Line("#000000", 0.9, 3, "-", "o"),
     Line("#6e6e6e", 0.9, 3, (0, (6, 2)), "x"),
@@ -25,13 +25,13 @@ GIVEN = (
 )
 MOST_MARKS = 150  # largest number of samples with markers
 
-#: Colours along the pillar, and of differences: diverging, perceptually uniform and safe for all
-#: kinds of colour blindness (ColorBrewer). Tension is blue and compression red.
+#: Colour maps of fields along the pillar and of differences: diverging, perceptually uniform,
+#: distinguishable with any colour blindness (ColorBrewer). Tension is blue and compression red.
 FIELD, DIFFERENCE = "RdBu_r", "PuOr_r"
-UNSIGNED = "YlOrRd"  # from zero to the largest
-GREY, PALE = "#5d6670", "#bbbbbb"  # of marks, and of the level of zero
+UNSIGNED = "YlOrRd"  # colour map from zero to the largest value
+GREY, PALE = "#5d6670", "#bbbbbb"  # of marks, and of the zero line
 
-#: Colours of the terms of an energy ledger: those of Tol (2021), "muted", and black.
+#: Colours of the terms of an energy ledger: "muted" of Tol (2021), and black.
 TERMS = {
     "kinetic": "#332288",
     "elastic": "#cc6677",
@@ -48,13 +48,13 @@ RC: dict[Any, Any] = dict(
     rc_params_from_file(Path(__file__).with_name("page.mplstyle"), use_default_template=False)
 )
 WIDTH = RC["figure.figsize"][0]  # inches
-SIZE = RC["font.size"]  # points of the page's letters
+SIZE = RC["font.size"]  # points
 
 
 def printed(width: float, size: float) -> dict[Any, Any]:
-    """Return matplotlib's settings of a figure for print, which needs no installed fonts.
+    """Return matplotlib's settings for a printed figure, which needs no installed fonts.
 
-    width : of the figure, mm. size : of its letters, points.
+    width : of the figure, mm. size : of the font, points.
     """
     return RC | {
         "figure.figsize": (width / 25.4, width / 25.4),
@@ -94,7 +94,7 @@ DRAWN = {
 
 
 def in_unit(value: float, si: str) -> str:
-    """Return a value with the multiple of its unit that suits it, in words."""
+    """Return a value with a suitable multiple of its unit, as text."""
     unit = unit_for(si, abs(value))
     return f"{value / unit.size:.3g} {unit.name}"
 

@@ -1,8 +1,8 @@
-"""Tables of a scene's variants, and their files: distances, readings of velocities, how curves were
-aligned, runs, and why solutions do not apply.
+"""Tables of a scene's variants, and their files: misfits, readings of velocities, alignment of
+curves, runs, and why solutions do not apply.
 
-Frames are in SI, a fact a column; tables are for display, with what labels a row in the index, and
-misfits in percent.
+Frames hold SI numbers, one fact per column. Tables are for display: the index holds the labels of
+rows, and misfits are in percent.
 """
 
 from collections.abc import Iterator
@@ -25,8 +25,8 @@ from jointwave.compare.runs import timings
 from jointwave.compare.runs.output import write_csv
 from jointwave.results.dataset import energy_residual, open_ledger
 
-PERIODS, SHORTEST = 60, 8  # of oscillators: how many, and the shortest period in samples
-#: Columns of distances, by their names in `Row.facts`.
+PERIODS, SHORTEST = 60, 8  # number of oscillators, and their shortest period in samples
+#: Columns of `distance_frame`, by their names in `Row.facts`.
 DISTANCES = {
     "misfit": "relative L2",
     "floor": "own error of the reference",
@@ -38,10 +38,10 @@ DISTANCES = {
     "envelope": "envelope misfit",
     "phase": "phase misfit",
 }
-#: The same of `distance_table`, in their order, with the factor of each.
+#: Columns of `distance_table` in the order of `Distance`, with the factor of each.
 SHOWN = {"relative L2 (%)": 100, "peak ratio": 1, "delay (ms)": 1e3, "period ratio": 1}
 SHOWN |= {"envelope misfit (%)": 100, "phase misfit (%)": 100}
-MANY = 8  # columns: a table of more is transposed
+MANY = 8  # columns; a wider table is transposed
 NAME = "comparison"  # of the files of a comparison
 READINGS = (
     "peak velocity (m/s)",
@@ -54,7 +54,7 @@ READINGS = (
 
 
 def rows_of(comparisons: list[Comparison]) -> list[tuple[str, Row]]:
-    """Return every distance, with the name of its variant."""
+    """Return every row of the comparisons, with the name of its variant."""
     return [(name, row) for name, comparison in named(comparisons) for row in comparison.rows]
 
 
@@ -63,7 +63,7 @@ def _under(rows: list[dict[str, Any]], *index: str) -> pd.DataFrame:
 
 
 def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every distance of every pair at every receiver of every variant."""
+    """Return all measures of distance of every pair at every receiver of every variant."""
     rows = [{"variant": v, "pair": row.solutions, **row.facts} for v, row in rows_of(comparisons)]
     found = pd.DataFrame(rows)
     axes = {axis: f"{axis} (m)" for axis in "xyz" if axis in found}
@@ -72,10 +72,10 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return the relative L2 misfits: a row a pair, a column a variant and receiver, or where these
-    are many the other way round.
+    """Return the relative L2 misfits: a row per pair, a column per variant and receiver; transposed
+    if there are many columns.
 
-    Faint waveforms and displacements, which are velocities once more, are in `distance_table`.
+    Faint waveforms, and displacements (integrals of the velocities), are in `distance_table` only.
     """
     shown = [
         (variant, row)
@@ -98,7 +98,7 @@ def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return every distance of every pair at every receiver of every variant."""
+    """Return the distances of every pair at every receiver of every variant, for display."""
     rows = [
         {"kind": row.pair.kind, "variant": name, "pair": row.solutions, "receiver": row.place.words}
         | {head: x and k * x for (head, k), x in zip(SHOWN.items(), row.distance, strict=True)}
@@ -108,15 +108,15 @@ def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
-    """Return by kind and pair the largest misfit over the variants, of the waveform that is
-    furthest off, as `[expect]` bounds it."""
+    """Return by kind and pair the misfit of the worst waveform of all variants, as `[expect]`
+    bounds it."""
     found = distance_frame(comparisons)
     misfits = 100 * found[DISTANCES["misfit"]].where(~found["faint"].astype(bool), 0.0)
     return misfits.groupby([found["kind"], found["pair"]], sort=False).max().rename("misfit")
 
 
 def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return how each file of others' curves was put beside each variant."""
+    """Return how each file of external curves was aligned with each variant."""
     return pd.DataFrame(
         {
             "file": beside.curves.name,
@@ -136,11 +136,11 @@ def alignment_frame(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def reading_frame(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return what engineers read off each receiver of velocity of each solution of each variant.
+    """Return engineering measures at each velocity receiver of each solution of each variant.
 
-    Peak particle velocity; Arias intensity and the largest pseudo-acceleration of oscillators with
-    5 % damping, of the direction in which they are largest; and from the first receiver, of whole
-    records, the speed by cross-correlation and the apparent Q where the first one is loudest.
+    These are peak particle velocity; Arias intensity and largest pseudo-acceleration of oscillators
+    with 5 % damping, each along its worst axis; and between the first receiver and this one the
+    wave speed by cross-correlation and the apparent Q at the peak frequency of the first record.
     """
     return pd.DataFrame(
         {"variant": name, "solution": solution, **row}
@@ -151,7 +151,7 @@ def reading_frame(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def _velocities(comparison: Comparison) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield the solutions with velocities, then the velocities of others at each receiver."""
+    """Yield the solutions with velocities, then the external velocities at each receiver."""
     for name, result in comparison.results.items():
         if "velocity" in result and result["velocity"].size:
             yield name, result
@@ -176,7 +176,7 @@ def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
         speed = Q = np.nan
         if i and peaks[i] and peaks[0]:
             quality = quality_factor(result, 0, i).quality
-            lossy = quality.where((quality > 0) & (quality < np.inf))  # nan where nothing is lost
+            lossy = quality.where((quality > 0) & (quality < np.inf))  # nan without attenuation
             speed, Q = wave_speed(result, 0, i), lossy.sel(frequency=loudest, method="nearest")
         k = int(values.argmax())
         found = peaks[i], intensities[i], values[k], periods[k], speed, Q
@@ -185,7 +185,7 @@ def _readings(result: xr.Dataset) -> Iterator[dict[str, float | str]]:
 
 
 def run_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return what each engine's run took, and how well its energy ledger closes."""
+    """Return size, steps, cost and energy residual of each run with time steps."""
     rows = [
         {
             "engine": engine,
@@ -209,7 +209,7 @@ def _residual(result: xr.Dataset) -> str:
 
 
 def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return why the solutions that are not drawn do not apply, and to which variants."""
+    """Return why solutions do not apply or have failed, and for which variants."""
     columns = ["solution", "variants", "why it does not apply"]
     rows = [
         (solution, variant, reason)
@@ -223,9 +223,9 @@ def reason_table(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def write_comparisons(comparisons: list[Comparison], out: Path) -> None:
-    """Write the figure and the tables of a scene's variants into a folder: comparison.csv with the
-    curves, comparison-misfits.csv, and where there are velocities or curves of others
-    comparison-readings.csv and comparison-alignment.csv."""
+    """Write the figure and tables of a scene's variants into a folder: comparison.csv with the
+    curves, comparison-misfits.csv, comparison-readings.csv if there are velocities, and
+    comparison-alignment.csv if there are external curves."""
     folder, scene = Path(out), comparisons[0].scene
     with timings.measured("tables", scene.kind, len(comparisons)):
         curves = curve_table(comparisons)

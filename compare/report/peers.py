@@ -1,6 +1,6 @@
-"""Other codes beside ours on the free pillar: the table that `make bench-peers` writes.
+"""Comparison with other codes on the free pillar, from the table that `make bench-peers` writes.
 
-Every row is a run of a whole process on one core; ours are among them, in turns with theirs.
+Every row is a run of a whole process on one core; runs of jointwave and other codes alternate.
 """
 
 import io
@@ -20,7 +20,7 @@ LARGEST_FILE = 1_000_000  # bytes; the table has a row for each run
 TITLE = "The free pillar in other codes"
 LEGEND = "Over ours: seconds over those of our run that it is compared with, median."
 TEXTS = ("curve", "solves", "settings", "state", "message", "beside", "machine")
-NUMBERS = {  # in the file, and on the page
+NUMBERS = {  # columns of the file, and their headings on the page
     "misfit": "own model (%)",
     "total_misfit": "finest physics (%)",
     "stepping_over_ours": "stepping over ours",
@@ -32,9 +32,9 @@ NUMBERS = {  # in the file, and on the page
 
 
 def read(file: Path | None) -> pd.DataFrame | None:
-    """Return the table of a file, or of where it is written; None where there is none.
+    """Return the table of a file; None: of the default file, None if that does not exist.
 
-    Raises SceneError where the file that is named cannot be read or is no such table.
+    Raises SceneError if the file cannot be read or is no such table.
     """
     path = file or PLACE
     if file is None and not path.is_file():
@@ -51,7 +51,7 @@ def read(file: Path | None) -> pd.DataFrame | None:
 
 
 def summarise(found: pd.DataFrame, folder: Path) -> Summary:
-    """Return every run, ratios in sentences, and what is missing; draw it into `folder`."""
+    """Return the summary of all runs, with failures; draw the figure into `folder`."""
     done, missing = found[found.state == "done"], found[found.state != "done"]
     failed = [f"{one.curve} ({one.solves}): {one.message}" for one in missing.itertuples()]
     machine = "; ".join(dict.fromkeys(filter(None, found.machine))) or "an unnamed machine"
@@ -65,14 +65,14 @@ def summarise(found: pd.DataFrame, folder: Path) -> Summary:
 
 
 def sentences(done: pd.DataFrame) -> list[str]:
-    """Return for each other code how many times as long as ours it takes."""
+    """Return for each other code its time over ours, in a sentence."""
     groups = done[done.stepping_over_ours.notna()].groupby("curve", sort=False)
-    said = [
+    found = [
         f"{curve} beside {rows.beside.iloc[0]}: stepping {span(rows.stepping_over_ours)} times, "
         f"whole process {span(rows.whole_over_ours)} times as long, with equal mesh and step."
         for curve, rows in groups
     ]
-    return said or ["No other code ran: there is nothing to compare with."]
+    return found or ["No other code ran: there is nothing to compare with."]
 
 
 def _draw(done: pd.DataFrame) -> Figure:

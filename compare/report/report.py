@@ -1,4 +1,4 @@
-"""The report: the figures of Guo & Li (2002), or scenes of one's own, as one page."""
+"""The report: one HTML page with the figures of Guo & Li (2002), or with the user's own scenes."""
 
 import logging
 import platform
@@ -40,8 +40,8 @@ from jointwave.compare.studies.store import DIED, FAILURES, Pool, alone, in_proc
 from jointwave.compare.text import in_seconds, percent, table_cell, times
 
 WORKERS = 2  # processes
-SCENES = 0.4  # of the progress of the paper's page; studies and hard cases are the rest
-LONG = 0.5  # s: a run that has taken so long is not repeated
+SCENES = 0.4  # of the progress of the paper's page; the rest are studies and hard cases
+LONG = 0.5  # s; longer runs are not timed again
 PAPERS = (
     "Figures 2 to 10 of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124–1129, by rigid "
     "blocks, by a deformable continuum and by exact solutions"
@@ -51,7 +51,7 @@ PACKAGES = ("jointwave", "scipy", "xarray", "obspy", "matplotlib")
 
 
 class Report(NamedTuple):
-    """The HTML file of the report, and what its templates show."""
+    """The HTML file of the report, and the data of its templates."""
 
     file: Path
     page: dict[str, Any]
@@ -72,13 +72,12 @@ def build(
     hard: bool = True,
     stored: ResultFolder = NOWHERE,
 ) -> Report:
-    """Solve scenes by all that applies, and write their figures, tables and `out`/index.html.
+    """Solve scenes with all solvers that apply; write figures, tables and `out`/index.html.
 
-    `scenes` are files or names of shipped ones; without any, the page has the paper's figures and
-    after them the studies. `progress` is called with the finished fraction of the whole. `workers`
-    processes share the work. `peers_table` is what `make bench-peers` wrote; None: where it writes,
-    if it did. `hard` : also put both engines to the hard cases. `stored` : the folder with a folder
-    of results for each scene.
+    scenes : files or names of shipped scenes; if empty, the page has the paper's figures and the
+    studies. progress : called with the finished fraction. workers : number of processes.
+    peers_table : the table of `make bench-peers`; None: its default file, if it exists. hard : also
+    run the hard cases. stored : folder with a folder of results for each scene.
     Raises SceneError and UnstableError, as `compare` does; the page is then not written.
     """
     tell, out, pool = progress or (lambda fraction: None), Path(out), partial(in_processes, workers)
@@ -100,7 +99,7 @@ def build(
 def planned(
     out: Path, scenes: Sequence[str], stored: ResultFolder
 ) -> tuple[list[Run], dict[str, int]]:
-    """Return the runs of `build` by two processes, and how many of what else it does."""
+    """Return the runs of `build` with two processes, and the numbers of its other tasks by kind."""
     requests = asked_for(scenes) + ([] if scenes else asked_for(ROCK_MASSES))
     found = [run for one in requests for run in planned_of_scene(one, stored)]
     count = sum(len(load_variants(one.file)) for one in requests)
@@ -116,10 +115,9 @@ def _solve(
     pool: Pool,
     progress: Progress,
 ) -> list[SolvedScene]:
-    """Return the scenes, solved and drawn by processes, and timed anew while no other process
-    should be computing, but for runs that take long."""
+    """Return the scenes, solved and drawn in parallel; short runs are then timed again alone."""
     found: dict[str, SolvedScene] = {}
-    # Those of most variants first, so that all processes end together.
+    # Scenes with most variants first, so that all processes end at nearly the same time.
     ordered = sorted(requests, key=lambda one: -len(load_variants(one.file)))
     for name, one in pool(work, {one.name: one for one in ordered}):
         if one is None:
@@ -133,7 +131,7 @@ def _solve(
     with alone():
         for one in found.values():
             for name, taken in one.seconds.items():
-                with suppress(*FAILURES):  # of engines that solve another variant
+                with suppress(*FAILURES):  # an engine may solve only another variant
                     if taken <= LONG:
                         again = engines.solve(name, one.scene).attrs["seconds_stepping"]
                         one.seconds[name] = min(taken, again)
@@ -147,7 +145,7 @@ def _page(
     rock: Sequence[SolvedScene] = (),
     studies: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
-    """Return what the templates show: scenes, the paper's or one's own, rock masses and studies."""
+    """Return the data of the templates."""
     every, numbered = [*solved, *rock], any(one.request.number for one in solved)
     links = {
         "Figures" if numbered else "Scenes": [(one.request.name, one.link) for one in solved],
@@ -178,9 +176,9 @@ def _page(
 
 
 def render(page: dict[str, Any], out: Path) -> str:
-    """Return the page, which is to stand in `out`, beside the files that it links to.
+    """Return the HTML of the page, with links relative to `out`.
 
-    page : what the templates show, of `_page`.
+    page : data of the templates, from `_page`.
     """
     loader = PackageLoader(__package__)
     environment = Environment(
@@ -208,19 +206,18 @@ def render(page: dict[str, Any], out: Path) -> str:
 
 
 def _picture(file: Path) -> str:
-    """Return an image, SVG or GIF, as an address of its own."""
+    """Return an SVG or GIF image as a data URL."""
     kind = {".svg": "svg+xml", ".gif": "gif"}[file.suffix]
     return f"data:image/{kind};base64,{b64encode(file.read_bytes()).decode('ascii')}"
 
 
 def _unbroken(text: str) -> str:
-    """Return text whose numbers do not break from their signs."""
+    """Return text with no-break spaces between numbers and signs."""
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
 def _rows(table: pd.DataFrame) -> Markup:
-    """Return a table in HTML, its labels on the left, alike ones together, and numbers on the
-    right; solutions and pairs of them are in words."""
+    """Return a table in HTML, with equal row labels grouped, and names of solutions in words."""
     if table.index.nlevels > 1:
         table = pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
     cells = table.apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))

@@ -1,4 +1,4 @@
-"""The scenes of a report: which, by what name, and each of them solved and drawn."""
+"""The scenes of a report: their selection, names, solutions, figures and tables."""
 
 import json
 import re
@@ -30,16 +30,16 @@ from jointwave.compare.studies.forecast import Run, runs_of
 from jointwave.compare.text import in_seconds, percent, span, times
 
 PAPER = Path(cases.__file__).parent / "guo-li-2002"
-FREE_PILLAR = 3  # the figure that says what the paper's own comparison is made of
-#: The shipped scenes of rock masses that the page shows beside the paper's figures.
+FREE_PILLAR = 3  # number of the figure whose misfit is explained, see `about`
+#: The shipped scenes of rock masses that follow the paper's figures on the page.
 ROCK_MASSES = ("rock-mass/one-joint",)
-FEW = 2  # references that are named
-CLOSE = 0.2  # the largest misfit that a solution is said to be within
+FEW = 2  # largest number of references listed by name
+CLOSE = 0.2  # largest misfit worded "within", not "up to"
 TAKEN = {"", "overview", "made", "rock-masses", "peers", "effects", "stability", "motion", "film"}
 
 
 class SceneRequest(NamedTuple):
-    """A scene of the report: its file, how its user calls it, and its name on the page."""
+    """A scene of the report: its file, the name given by the user, and its name on the page."""
 
     file: Path
     called: str
@@ -47,29 +47,29 @@ class SceneRequest(NamedTuple):
 
     @property
     def number(self) -> int | None:
-        """Of the paper's figure that the scene is; None for any other scene."""
+        """The number of the paper's figure; None for any other scene."""
         found = re.fullmatch(r"fig-(\d+)", self.file.stem)
         return int(found[1]) if found and self.file.resolve().parent == PAPER.resolve() else None
 
     @property
     def label(self) -> str:
-        """What a column or a link calls it."""
+        """Its name in columns and links."""
         return f"fig. {self.number}" if self.number else self.name
 
     def own(self, stored: ResultFolder) -> ResultFolder:
-        """Return the folder of its results in that of all."""
+        """Return the folder of its results, a subfolder of `stored`."""
         return replace(stored, folder=stored.folder and stored.folder / self.file.stem)
 
 
 class SolvedScene(NamedTuple):
-    """A scene solved by all that applies.
+    """A scene solved with all solvers that apply.
 
-    scene : its first variant that most engines solve, and the seconds of stepping it by engine, of
-    another one by those that do not. lead : the picture at the head of its page; None without
-    receivers. tables : by name, and the files of those that are written. scores : where its engines
-    stand. worst : misfits by pair. versions : of the packages that solved it. about : what its
-    misfit is made of, of the paper's free pillar. read : seconds that each result took which was
-    read, not computed.
+    scene : the first variant solved by most engines. seconds : of stepping it, by engine; for an
+    engine that does not solve it, of another variant. lead : the picture at the head of its
+    section; None without receivers. tables, files : by name; some tables are also files. scores :
+    verdicts of its engines. worst : misfits by pair. versions : of the packages that solved it.
+    about : parts of the misfit of the paper's free pillar. read : seconds that each result took
+    that was read, not computed.
     """
 
     request: SceneRequest
@@ -88,23 +88,23 @@ class SolvedScene(NamedTuple):
 
     @property
     def costs(self) -> dict[str, float]:
-        """The seconds of each engine over those of the cheapest."""
+        """The seconds of each engine over those of the cheapest engine."""
         least = min(self.seconds.values())
         return {name: s / least if least > 0 else 1.0 for name, s in self.seconds.items()}
 
     @property
     def link(self) -> str:
-        """Its words in the contents."""
+        """Its entry in the contents."""
         return f"{self.request.number or ''} {self.scene.title}".strip()
 
     @property
     def command(self) -> str:
-        """What reports this scene alone."""
+        """The command that reports this scene alone."""
         return shlex.join(["jointwave", "report", self.request.called, "--out", self.request.name])
 
 
 def asked_for(scenes: Sequence[str]) -> list[SceneRequest]:
-    """Return the scenes to report, each under a name of its own; without any, the paper's."""
+    """Return the scenes to report, with unique names; if none are given, the paper's."""
     paper = [f"{PAPER.name}/{file.stem}" for file in sorted(PAPER.glob("fig-*.toml"))]
     called = list(dict.fromkeys(scenes)) or paper
     found: dict[str, SceneRequest] = {}
@@ -127,9 +127,9 @@ def planned(request: SceneRequest, stored: ResultFolder) -> list[Run]:
 
 
 def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -> SolvedScene:
-    """Solve a scene's variants by all that applies, and write its pictures and tables.
+    """Solve a scene's variants with all solvers that apply; write its figures and tables.
 
-    stored : the folder with a folder of results for each scene.
+    stored : folder with a folder of results for each scene.
     """
     own, scenes = request.own(stored), load_variants(request.file)
     comparisons = [compare(scene, spectral=True, stored=own) for scene in scenes]
@@ -166,8 +166,8 @@ def solve(request: SceneRequest, folder: Path, stored: ResultFolder = NOWHERE) -
 def _draw(
     request: SceneRequest, comparisons: list[Comparison], folder: Path, stored: ResultFolder
 ) -> tuple[Drawn | None, list[Drawn]]:
-    """Return the picture at the head, a map or else the waveform that is furthest from its
-    reference in the first variant, and all figures."""
+    """Return the picture at the head (a map, else the waveform of the first variant that is
+    furthest from its reference), and all figures."""
     fields = [scene_figures.along_pillar(one.scene, stored) for one in comparisons]
     with timings.measured("pages", comparisons[0].scene.kind, len(comparisons)):
         figures = scene_figures.figures_of(request.name, comparisons, fields)
@@ -185,13 +185,13 @@ def _save(one: SceneFigure, folder: Path) -> Drawn:
 
 
 def lead(scenes: Sequence[SolvedScene]) -> dict[str, str]:
-    """Return a sentence on each engine that solves a scene."""
+    """Return a sentence on each engine that solves any of the scenes."""
     found = {e: [one for one in scenes if e in one.scores] for e in ENGINES}
     return {engine: _sentence(engine, solved) for engine, solved in found.items() if solved}
 
 
 def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
-    """Return how far an engine lies from the finest physics, by kind of scene, and at what cost."""
+    """Return an engine's misfit from the finest physics by kind of scene, and its cost."""
     kinds = dict.fromkeys(one.scene.kind for one in scenes)
     of_kind = {kind: [one for one in scenes if one.scene.kind == kind] for kind in kinds}
     apart = [
@@ -206,8 +206,8 @@ def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
 
 
 def _distance(engine: str, scenes: list[SolvedScene], of: str) -> str:
-    """Return the largest misfit from the references, which are named if there are few; of : which
-    scenes, in words."""
+    """Return the largest misfit from the references (named if they are few) as text; of : words for
+    the scenes."""
     scores = [one.scores[engine] for one in scenes]
     found = [x for one in scores if not isnan(x := one.total.judged)]
     if not found:

@@ -1,4 +1,4 @@
-"""The sections of the page that are not scenes: studies, effects, hard cases, snapshots."""
+"""Sections of the page besides scenes: studies, effects, hard cases, snapshots, a film."""
 
 from collections.abc import Iterator
 from itertools import chain
@@ -29,13 +29,13 @@ from jointwave.compare.studies.work_precision import REPORTED
 from jointwave.compare.text import percent
 from jointwave.results.snapshots import snapshots_of
 
-APPENDIX = ("convergence", "uniform-chain")  # the studies of steps and elements alone
+APPENDIX = ("convergence", "uniform-chain")  # studies of time steps and elements only
 BLOW = "beyond/eccentric-blow"  # the scene of the snapshots, and its changes
 SEEN = {"record.fields": 5e-3, "time.duration": 0.035, "record.energy": False}
 SLIDE, EXACT = "rock-mass/sliding-joint", "normal-incidence"  # the scene of the film, its solution
-FRAMES, RATE = 41, 8  # of the film, in all and a second
+FRAMES, RATE = 41, 8  # of the film: number of frames, frames per second
 DIAGRAMS = len(TITLES) + len(REPORTED) + 4  # effects, hard cases, snapshots, film
-HARD = 0.5  # of the progress, where the hard cases are asked for
+HARD = 0.5  # of the progress at which the hard cases start
 
 
 def sections(
@@ -43,8 +43,7 @@ def sections(
 ) -> Iterator[dict[str, Any]]:
     """Yield the sections in the order of the page; points and figures are saved in `out`.
 
-    hard : also put both engines to the hard cases. others : runs of other codes, which stand behind
-    the first study.
+    hard : also run the hard cases. others : runs of other codes, shown after the first study.
     """
     folder = out / "studies"
     for name in TITLES:
@@ -83,8 +82,8 @@ def _effects(out: Path) -> Experiment:
 
 
 def section(kind: str, found: Summary, command: str, **more: Any) -> dict[str, Any]:
-    """Return what a section shows; kind : of its caption. more : the id that it has on the page and
-    its words in the contents, if not those of the summary."""
+    """Return the data of a section; kind : of its caption. more : its `id` and its `contents`
+    entry, if not the name and title of the summary."""
     about = {"kind": kind, "found": found, "command": command, "appendix": False}
     return about | {"id": found.name, "contents": found.title} | more
 
@@ -112,7 +111,7 @@ def _snapshots(out: Path) -> dict[str, Any]:
 
 
 def film(out: Path) -> dict[str, Any]:
-    """Film a rock mass in space by both engines, and say how far they are from its exact motion."""
+    """Film a rock mass in space with both engines, with their misfits from the exact solution."""
     scene = cases.load_variant(find(SLIDE), "", {})
     simulated = take(scene, scene.time.duration / (FRAMES - 1))
     exact = solve(EXACT, simulated.scene)

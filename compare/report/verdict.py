@@ -1,4 +1,4 @@
-"""Verdict on an engine for a scene: its misfits, and one word."""
+"""The verdict on an engine for a scene: its misfits, and one word."""
 
 from collections.abc import Iterable, Mapping
 from math import isfinite, isnan, nan
@@ -20,7 +20,7 @@ from jointwave.results.labels import PEAK_STRESS, PEAKS, PPV
 
 
 class Verdict(NamedTuple):
-    """A word and a sign; `grade` is how it is coloured, "a" (best) to "d", "x" for a failure."""
+    """A word and a sign; `grade` sets the colour: "a" (best) to "d", "n" unchecked, "x" broken."""
 
     sign: str
     word: str
@@ -29,7 +29,7 @@ class Verdict(NamedTuple):
 
 NOT_CHECKED = Verdict("?", "not checked independently", "n")
 BROKEN = Verdict("✗", "out of bounds", "x")
-#: By the misfit from the finest physics that each is given up to.
+#: Verdicts by the largest misfit from the finest physics for which each is given.
 VERDICTS = {
     0.01: Verdict("✓", "agrees", "a"),
     0.05: Verdict("≈", "close", "b"),
@@ -37,16 +37,16 @@ VERDICTS = {
     float("inf"): Verdict("▲", "far off", "d"),
 }
 ORDER = "abncdx"  # of grades, from the best to the worst: the worst variant decides
-STATIC = 0.01  # of the largest static stress: a difference of static states that is said
+STATIC = 0.01  # of the largest static stress; a larger difference of static states is reported
 
 
 class VariantScore(NamedTuple):
     """One engine on one variant.
 
-    own : misfit from the exact solution of the engine's own model. total : from the reference,
-    `against`, empty where nothing has checked it independently; `reason` says what the reference
-    is, `meaning` what their distance is. broken : keys of [expect] beyond their bound. peaks :
-    "PPV" and "peak stress" beside the reference's. static : of the two static states.
+    own : misfit from the exact solution of the engine's own model. total : misfit from the
+    reference `against`, "" if there is no independent one; `reason` says why it is the reference,
+    `meaning` what kind of difference the misfit is. broken : keys of [expect] whose bound is
+    exceeded. peaks : differences of "PPV" and "peak stress". static : difference of static states.
     """
 
     variant: str
@@ -61,7 +61,7 @@ class VariantScore(NamedTuple):
 
     @property
     def verdict(self) -> Verdict:
-        """What the numbers come to."""
+        """The verdict on these numbers."""
         if self.broken:
             return BROKEN
         if isnan(self.total.judged):
@@ -70,7 +70,7 @@ class VariantScore(NamedTuple):
 
     @property
     def static_words(self) -> str:
-        """By how much the static state differs from the reference's; "" if by less than 1 %."""
+        """The difference of static states in words; "" if it is at most 1 %."""
         if not self.static.misfit > STATIC:
             return ""
         off = f"{100 * self.static.misfit:.2g} % of the largest static stress"
@@ -78,7 +78,7 @@ class VariantScore(NamedTuple):
 
     @property
     def facts(self) -> dict[str, Any]:
-        """All of it, machine-readable; None where there is none."""
+        """All values, machine-readable; missing ones are None."""
         peaks = {
             f"{short}_{part}": getattr(self.peaks.get(name), part, None)
             for name, short in ((PPV, "ppv"), (PEAK_STRESS, "peak_stress"))
@@ -106,28 +106,28 @@ class EngineScore(NamedTuple):
 
     @property
     def total(self) -> Worst:
-        """The largest misfit; nan if nothing has checked any variant."""
+        """The largest misfit; nan if no variant was checked independently."""
         totals = (one.total for one in self.variants)
         return max(totals, key=lambda one: -1.0 if isnan(one.judged) else one.judged)
 
     @property
     def unchecked(self) -> list[str]:
-        """The variants that nothing has checked independently."""
+        """The variants that were not checked independently."""
         return [one.variant for one in self.variants if isnan(one.total.judged)]
 
     @property
     def broken(self) -> list[str]:
-        """The bounds of [expect] that are not met."""
+        """The keys of [expect] whose bounds are exceeded."""
         return [pair for one in self.variants for pair in one.broken]
 
     @property
     def verdict(self) -> Verdict:
-        """That of the worst variant."""
+        """The verdict on the worst variant."""
         return max((one.verdict for one in self.variants), key=lambda v: ORDER.index(v.grade))
 
 
 def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
-    """Return where each engine stands that has run on some variant."""
+    """Return the score of each engine that has solved some variant."""
     found = {
         engine: tuple(
             score(engine, one, name) for name, one in named(comparisons) if engine in one.results
@@ -138,7 +138,7 @@ def engine_scores(comparisons: list[Comparison]) -> dict[str, EngineScore]:
 
 
 def verdict_table(scores: dict[str, EngineScore]) -> pd.DataFrame:
-    """Return the verdict on each engine in each variant, with what engineers read."""
+    """Return the verdict on each engine in each variant, with errors of PPV and peak stress."""
     rows = [
         {
             "engine": engine,
@@ -164,7 +164,7 @@ def verdicts(comparison: Comparison) -> dict[str, VariantScore]:
 
 
 def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScore:
-    """Return how far an engine is from its reference, and from its own model, in one variant."""
+    """Return an engine's misfits from its reference and from its own model in one variant."""
     results, scene = comparison.results, comparison.scene
     against, reason = reference_of(engine, results, scene) or ("", "")
     own = _misfit(comparison, engine, own_exact(engine, results, scene))
@@ -180,14 +180,14 @@ def score(engine: str, comparison: Comparison, variant: str = "") -> VariantScor
 
 
 def _misfit(comparison: Comparison, one: str, other: str | None) -> Worst:
-    """Return a misfit; nan where one of the two is not there, or the other stands still."""
+    """Return a misfit; nan if `other` was not solved or does not move."""
     results = comparison.results
     found = worst(results[one], results[other]) if other in results else Worst(nan)
     return found if isfinite(found.judged) else Worst(nan)
 
 
 def _broken(engine: str, comparison: Comparison) -> Iterable[str]:
-    """Yield the keys of [expect] that an engine is first in and that are not known to hold."""
+    """Yield the keys of [expect] whose first solver is the engine, unless their bound holds."""
     results = comparison.results
     for key, most in comparison.scene.expect.items():
         bound = bound_of(key)

@@ -1,4 +1,4 @@
-"""A scene solved by all solutions that apply, with the distances between them."""
+"""A scene solved by all solutions that apply, with the misfits between them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -22,12 +22,12 @@ def compare(
     spectral: bool = False,
     stored: ResultFolder = NOWHERE,
 ) -> Comparison:
-    """Return a scene solved by all solutions that apply, with the distance of every pair.
+    """Return a scene solved by all solutions that apply, with the misfit of every pair.
 
-    curves : external ones, of `read_curves`, to compare with every solution. progress : called with
-    the finished fraction. align : whether the clocks of the curves are shifted onto the solution
-    that fits best. spectral : whether to add envelope and phase misfits. stored : the folder that
-    results are read from and written to; by default there is none.
+    curves : external curves, from `read_curves`, to compare with every solution. progress : called
+    with the finished fraction. align : whether to shift the curves in time onto the solution that
+    fits best. spectral : whether to add envelope and phase misfits. stored : folder from which
+    results are read and to which they are written; default: none.
     """
     scene = load(scene)
     for one in curves:
@@ -47,16 +47,16 @@ def solved(
     progress: Progress | None = None,
     stored: ResultFolder = NOWHERE,
 ) -> Comparison:
-    """Solve a scene by the solutions that apply, without measuring any pair.
+    """Solve a scene by the solutions that apply, without computing misfits.
 
-    answers : whether each requested solution applies, by name. What fails is logged and left out.
-    Raises SceneError if none applies, and the error of the first if all fail.
+    answers : whether each requested solution applies, by name. Failed solutions are logged and left
+    out. Raises SceneError if none applies, and the first error if all fail.
     """
     if not any(answers.values()):
         why = "; ".join(f"{name}: {answer.reason}" for name, answer in answers.items())
         raise SceneError(scene.where, "", None, f"nothing solves it: {why}")
-    asked, failed = [name for name, answer in answers.items() if answer], dict[str, Exception]()
-    results = dict(stored.solve(asked, scene, progress, failed=failed))
+    able, failed = [name for name, answer in answers.items() if answer], dict[str, Exception]()
+    results = dict(stored.solve(able, scene, progress, failed=failed))
     if not results:
         raise next(iter(failed.values()))
     reasons = {name: answer.reason for name, answer in answers.items() if not answer}

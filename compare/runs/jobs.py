@@ -1,4 +1,4 @@
-"""Jobs of `jointwave run`, one per result, checked before any is run."""
+"""Jobs of `jointwave run`, one per result; all are checked before the first runs."""
 
 from itertools import chain, product
 from pathlib import Path
@@ -32,7 +32,7 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
 
 
 def engine_of(model: str) -> str:
-    """Return the --engine of a model, that of the exact solutions for an unknown one."""
+    """Return the --engine of a model; for an unknown model that of the exact solutions."""
     return next((one for one, models in selection().items() if model in models), Solver.engine)
 
 
@@ -46,10 +46,10 @@ def options_of(name: str) -> list[str]:
 def plan(
     scenes: list[AnyScene], runs: list[tuple[str, str | None]], out: Path
 ) -> tuple[list[Job], list[SceneError]]:
-    """Return the jobs, and why engines leave out a variant.
+    """Return the jobs, and errors that say why an engine does not solve a variant.
 
-    Raises SceneError before any run if there is no job, and if a file that is not a result is in
-    the place of one.
+    Raises SceneError before any run if there is no job, or if a result would overwrite a file that
+    is not a result.
     """
     from jointwave.compare.runs.output import refuse_foreign
 
@@ -70,13 +70,13 @@ def plan(
 
 
 def result_path(out: Path, scene: AnyScene, name: str, suffix: str = "") -> Path:
-    """Return the file of a solver's result, in the folder of its variant if it has a name."""
+    """Return the file of a solver's result, in a folder for the variant if it has a name."""
     file = name if name in ENGINES else f"{solver(name).engine}-{name}"
     return out / scene.name / f"{file}{suffix}.nc"
 
 
 def names_of(engine: str, model: str | None, scene: AnyScene) -> list[str]:
-    """Return the solvers of a scene for an engine and model; the model None: all that apply.
+    """Return the solvers of a scene for an engine and a model; None: all models that apply.
 
     Raises SceneError if none does.
     """

@@ -1,4 +1,4 @@
-"""The only place that writes files: each in a temporary folder first, then moved."""
+"""All writing of files: each is written in a temporary folder first, then moved."""
 
 import os
 import shutil
@@ -18,18 +18,17 @@ from jointwave.cases.files import is_number, read_json
 from jointwave.results.netcdf import MAGIC
 from jointwave.results.snapshots import Snapshots
 
-LARGEST_ROW = 100_000_000  # bytes, of a point saved by a study, a sweep or the robustness suite
+LARGEST_ROW = 100_000_000  # bytes of a point saved by a study or a sweep
 FORMULA = ("=", "+", "-", "@")  # first characters of a spreadsheet formula
 OVERWRITTEN = "would be overwritten: choose another --out"
-UNFINISHED = ".unfinished-"  # in the names of folders being filled, which begin with a dot
+UNFINISHED = ".unfinished-"  # in the names of temporary folders, which begin with a dot
 
 
 def write(path: Path, save: Callable[[Path], object]) -> Path:
-    """Let `save` write a file or a folder and move it to `path` once it is complete.
+    """Let `save` write a file or a folder, then move it to `path`.
 
-    A file or folder at `path` is replaced then, and kept if `save` fails.
-    Raises OSError, which names `path`, if it cannot be written; SceneError if a folder there
-    contains files of other kinds.
+    An existing file or folder is replaced only if `save` succeeds. Raises OSError, which names
+    `path`, if it cannot be written; SceneError if an existing folder contains files of other kinds.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -81,17 +80,15 @@ DRAWINGS, FILMS = (".pdf", ".svg", ".png"), (".mp4", ".gif")
 
 
 def check_out(path: Path, kinds: tuple[str, ...] = DRAWINGS) -> None:
-    """Raise SceneError if `--out` cannot be a file of these kinds: for its suffix, or for a file of
-    another kind there."""
+    """Raise SceneError if `--out` has another suffix, or names an existing file of another kind."""
     if path.suffix not in kinds:
         raise SceneError("--out", str(path), None, f"must end in {' or '.join(kinds)}")
     refuse_foreign(path, BEGINS[path.suffix])
 
 
 def refuse_foreign(path: Path, begins: tuple[bytes, ...] = MAGIC) -> None:
-    """Raise SceneError if the existing file at a path does not begin like one of jointwave's; it
-    may be empty. A link there is replaced, and its target is kept.
-    """
+    """Raise SceneError if a path exists and is neither empty nor begins like a file of jointwave.
+    Symbolic links are not checked: writing replaces the link and keeps its target."""
     if path.is_symlink() or not path.exists():
         return
     found = "is a folder" if path.is_dir() else "is not a result"
@@ -104,7 +101,7 @@ def refuse_foreign(path: Path, begins: tuple[bytes, ...] = MAGIC) -> None:
 
 
 def _refuse_foreign_folder(path: Path, new: Path) -> None:
-    """Raise SceneError if a folder contains files of a kind that the new one does not."""
+    """Raise SceneError if a path is a file, or a folder with files of kinds not in the new one."""
     kinds = {file.suffix for file in new.iterdir()} if new.is_dir() else set()
     if path.is_symlink() or not path.exists():
         return
@@ -140,7 +137,7 @@ def write_text(path: Path, text: str) -> Path:
 
 
 def read_rows(path: Path) -> Any:
-    """Return a row, or a list of rows, from JSON; raises SceneError if the file has none."""
+    """Return a row, or a list of rows, from JSON; raises SceneError if the file is damaged."""
     try:
         found = read_json(path, LARGEST_ROW)
         if not all(
@@ -153,7 +150,7 @@ def read_rows(path: Path) -> Any:
 
 
 def write_dataset(path: Path, result: xr.Dataset) -> Path:
-    """Write a result as NetCDF 3, whose integers have 32 bits."""
+    """Write a result as NetCDF 3; integer attributes beyond its 32 bits become floats."""
     refuse_foreign(path)
     texts = {k: v.astype(str) for k, v in result.variables.items() if v.dtype == object}
     whole = {k: v for k, v in result.attrs.items() if isinstance(v, int | np.integer)}
@@ -164,11 +161,11 @@ def write_dataset(path: Path, result: xr.Dataset) -> Path:
 
 
 def write_pvd(path: Path, s: Snapshots) -> Path:
-    """Write snapshots for ParaView: NAME.pvd at `path`, and beside it NAME-fields/0000.vtu, ...,
-    one per instant, by meshio.
+    """Write snapshots for ParaView: NAME.pvd at `path`, and NAME-fields/0000.vtu, ..., one per
+    instant, with meshio.
 
-    Points are those of the unloaded body; the filter "Warp By Vector" shows its motion. Point data:
-    displacement (m), velocity (m/s). Cell data: block, stress (Pa) where known.
+    Points are those of the undeformed body; the filter "Warp By Vector" shows its motion. Point
+    data: displacement (m), velocity (m/s). Cell data: block and, if known, stress (Pa).
     """
     import meshio  # slow to import
 

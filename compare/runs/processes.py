@@ -1,7 +1,7 @@
 """The processes of one command: this one only, or all those started by mpiexec.
 
-They do the same with the same input. Work that is not shared among them is done by the first one
-for all; its output is printed once.
+All execute the same command. Work that is not shared is done by the first process only, which also
+prints.
 """
 
 import os
@@ -16,15 +16,15 @@ from typing import Any, NoReturn, TextIO, TypeVar
 
 from jointwave.cases.errors import SceneError
 
-#: Number of processes, as set by launchers: Open MPI, MPICH and its relatives, MVAPICH.
+#: Variables with the number of processes: Open MPI, MPICH and derivatives, MVAPICH.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
-#: Set by PMIx, without the number of processes.
+#: Variable set by PMIx, which does not give the number of processes.
 STARTED = "PMIX_RANK"
 
-PATIENCE = 5.0  # s: a failure common to all processes occurs at nearly the same time
-GRACE = 0.5  # s: an aborted job may lose output that its launcher has not forwarded yet
-READY = 1e-3  # s, after which a process that waits sleeps: a balanced run waits less
-SHARE, LONGEST = 0.1, 0.01  # of each sleep: of the time waited so far, and s at most
+PATIENCE = 5.0  # s; a failure common to all processes occurs at nearly the same time
+GRACE = 0.5  # s; aborting may lose output that the launcher has not forwarded yet
+READY = 1e-3  # s, after which a waiting process sleeps; a balanced run waits less
+SHARE, LONGEST = 0.1, 0.01  # length of each sleep: of the time waited so far, and at most, s
 
 T = TypeVar("T")
 
@@ -41,16 +41,16 @@ class Processes:
         self.size: int = 1 if comm is None else comm.size
         self.is_first = self.rank == 0
         self._stderr: TextIO | None = None
-        # For messages about the command itself: runs do not use this communicator.
+        # For messages about the command itself; runs use `comm`.
         self._own: Any = None if comm is None else comm.Dup()
 
     @property
     def stderr(self) -> TextIO:
-        """Stream for errors, even of a muted process."""
+        """Stream for errors, also of a muted process."""
         return self._stderr or sys.stderr
 
     def mute_others(self) -> None:
-        """Let only the first process print and write: it does so for all."""
+        """Discard the output of all processes except the first."""
         if not self.is_first:
             self._stderr = sys.stderr
             sys.stdout = sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
@@ -60,22 +60,20 @@ class Processes:
         return [value] if self._own is None else self._own.allgather(value)
 
     def together(self, work: Callable[[], object]) -> None:
-        """Work on every process; an exception of any one is raised on all, once all are done."""
+        """Do `work` on every process; raise the exception of any on all, once all are done."""
         _, error = _tried(work)
         for found in self.all_of(error):
             if found is not None:
                 raise found
 
     def told_by_first(self, work: Callable[[], T]) -> T:
-        """Return on all processes the result of `work` on the first; exceptions likewise."""
+        """Do `work` on the first process; return its result, or raise its exception, on all."""
         done: Any = self.by_first(work)
         return done if self._own is None else self._own.bcast(done)
 
     def by_first(self, work: Callable[[], T]) -> T | None:
-        """Return the result of `work` on the first process, None on the others, which sleep.
-
-        An exception is raised on all.
-        """
+        """Do `work` on the first process while the others sleep; return its result there, None
+        elsewhere. An exception is raised on all."""
         if self._own is None:
             return work()
         done, error = _tried(work) if self.is_first else (None, None)
@@ -85,7 +83,7 @@ class Processes:
         return done
 
     def fail(self, message: str, code: int) -> NoReturn:
-        """Print one line and exit with a code: all processes together, else by aborting all."""
+        """Print one line and exit with a code; abort if not all processes arrive here in time."""
         if self.is_first:
             self._tell(message)
         if self._own is not None and not arrive(self._own, PATIENCE):
@@ -101,7 +99,7 @@ class Processes:
 
 
 def _tried(work: Callable[[], T]) -> tuple[T | None, Exception | None]:
-    """Return the result of work and what it has raised."""
+    """Return the result of work, and the exception that it raised."""
     try:
         return work(), None
     except Exception as error:
@@ -109,11 +107,11 @@ def _tried(work: Callable[[], T]) -> tuple[T | None, Exception | None]:
 
 
 def arrive(comm: Any, patience: float = inf) -> bool:
-    """Wait until all processes of mpi4py's communicator have called this, and return whether they
-    do so within `patience` (s).
+    """Wait until all processes of a communicator of mpi4py arrive; return whether they do so within
+    `patience`, s.
 
-    For long waits, where one process compiles, partitions or runs for all: MPI's own barrier spins,
-    and takes a core from the process that it waits for.
+    For long waits while one process compiles, partitions or runs for all: MPI's own barrier spins
+    and so takes a core from the working process.
     """
     began, request = monotonic(), comm.Ibarrier()
     while not request.Test():
@@ -130,7 +128,7 @@ ALONE = Processes()
 
 @cache
 def started() -> Processes:
-    """Return the processes of this command; raises SceneError if they cannot work together."""
+    """Return the processes of this command; raises SceneError if they cannot communicate."""
     counts = [int(os.environ[name]) for name in SIZES if name in os.environ]
     if not counts and STARTED not in os.environ:
         return Processes()

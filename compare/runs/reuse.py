@@ -1,6 +1,6 @@
-"""Results that an earlier command has computed: read where they are the same, computed where not.
+"""Reuse of results of earlier commands.
 
-A file says by its signature what computed it, and by a checksum whether it is whole.
+The signature in a file says what computed it, a checksum whether it is intact.
 """
 
 import hashlib
@@ -25,22 +25,22 @@ from jointwave.results.dataset import scene_hash
 from jointwave.results.netcdf import load_netcdf
 
 SIGNATURE, CHECKSUM, SECONDS = "signature", "checksum", "seconds_total"  # attributes of a result
-SNAPSHOTS = "-snapshots"  # in the names of files of films and views, which record more
+SNAPSHOTS = "-snapshots"  # suffix of the files of films and views, which record more
 DAMAGED = "is damaged"
 
 log = logging.getLogger("jointwave")
 
 
 def signed(result: xr.Dataset, about: Signature, seconds: float) -> xr.Dataset:
-    """Return a result with the attributes of its file; seconds : that it took."""
+    """Return a result with the attributes of its file; seconds : its computing time."""
     whole = {CHECKSUM: _checksum(result), SECONDS: seconds}
     return result.assign_attrs({SIGNATURE: json.dumps(about), **whole})
 
 
 def unlike(path: Path, about: Signature) -> str:
-    """Return why a file is not the result of this signature, by its attributes alone; "" if it is.
+    """Return why a file is not the result of this signature, from its attributes only; "" if it is.
 
-    The number of processes does not matter: it changes a result by round-off only.
+    The number of processes is ignored: it changes a result by round-off only.
     """
     if not path.is_file():
         return "is missing"
@@ -57,11 +57,11 @@ def unlike(path: Path, about: Signature) -> str:
 
 
 def read_result(path: Path, scene: AnyScene, about: Signature, told: set[str]) -> xr.Dataset | None:
-    """Return the result of this signature from a file; None where there is none, whose reason is
+    """Return the result of this signature from a file; None if it cannot be used, with the reason
     logged once.
 
-    scene : that the result is for, which may differ from the one in the file in what decides
-    nothing, such as the bounds of `[expect]`. told : the reasons that were logged.
+    scene : replaces the scene in the file, from which it may differ in keys that do not affect the
+    result, such as `[expect]`. told : the reasons logged so far.
     """
     found, why = None, unlike(path, about)
     if not why:
@@ -84,12 +84,12 @@ def read_result(path: Path, scene: AnyScene, about: Signature, told: set[str]) -
 
 
 def seconds_read(results: Mapping[str, xr.Dataset]) -> list[float]:
-    """Return the seconds that those results took which were read from files, as signed there."""
+    """Return the computing times, s, of those results that were read from files."""
     return [float(one.attrs[SECONDS]) for one in results.values() if SECONDS in one.attrs]
 
 
 def log_reading(read: Mapping[Path, xr.Dataset]) -> None:
-    """Log which files of a folder were read, when they were computed and how long that took."""
+    """Log which files of a folder were read, when they were computed, and in how many seconds."""
     if read:
         (first, *others), seconds = read, sum(one.attrs[SECONDS] for one in read.values())
         names = ", ".join([str(first), *(path.name for path in others)])
@@ -102,7 +102,7 @@ def log_reading(read: Mapping[Path, xr.Dataset]) -> None:
 class ResultFolder:
     """A folder with the results of a scene; None: nothing is read or stored.
 
-    fresh : compute anew what could be read. told : why files were not read, as far as logged.
+    fresh : compute everything anew. told : the logged reasons why files were not read.
     """
 
     folder: Path | None = None
@@ -117,10 +117,10 @@ class ResultFolder:
         suffix: str = "",
         failed: dict[str, Exception] | None = None,
     ) -> Iterator[tuple[str, xr.Dataset]]:
-        """Yield the name and the result of each solver, stored where it was not read.
+        """Yield the name and result of each solver; computed results are stored.
 
-        suffix : of the file names, where the scene records other than its file says. failed : takes
-        the errors of `compare.engines.solve` by name, each of which is logged; None: raises them.
+        suffix : of the file names, if the scene records other quantities than its file. failed :
+        collects the errors of `compare.engines.solve` by name, which are logged; None: raise them.
         """
         every, folder, read = list(names), self.folder, {}
         for i, name in enumerate(every):
@@ -174,7 +174,7 @@ def _is_stored(path: Path, result: xr.Dataset) -> bool:
 
 
 def _checksum(result: xr.Dataset) -> str:
-    """Return a checksum of all variables, the same of a result and of its file."""
+    """Return a checksum of all variables, equal for a result and for its file."""
     digest = hashlib.sha256()
     for name in sorted(map(str, result.variables)):
         values = result.variables[name]

@@ -25,10 +25,10 @@ STOPPED = ".stopped.nc"  # the end of the name of a partial result
 
 
 class Done(NamedTuple):
-    """One computed result. ledger : the warning of an open energy ledger, "" without.
+    """One computed result. ledger : warning that the energy ledger does not close, or "".
 
-    facts : machine-readable; `fragments`, the pieces between broken joints, are None if no joint
-        can break, `static_out_of_balance` without a static state at the start. `fields` are files.
+    facts : machine-readable. `fragments` (pieces between broken joints) is None if no joint can
+        break, `static_out_of_balance` without an initial static state. `fields` : files.
     """
 
     job: Job
@@ -44,21 +44,21 @@ def execute(
 ) -> list[Done]:
     """Run the jobs one after the other and write each result with its snapshots.
 
-    processes : share the runs of the continuum. The first of them does the other runs, writes all
-        files, and is the only one to return what was done.
+    processes : share the runs of the continuum. The first process does the other runs, writes all
+        files, and alone returns the list.
     settings : checkpoint settings of the runs; None: no checkpoints.
     Raises SceneError if a run fails, its file cannot be written, or its checkpoint cannot be used;
     InterruptedRun if a signal has stopped a run.
     """
     settings = settings or CheckpointSettings(0.0, False, Signals())
-    keepers: list[Any] = [_shared(job, processes, partial(_keeper, job, settings)) for job in jobs]
+    savers: list[Any] = [_shared(job, processes, partial(_saver, job, settings)) for job in jobs]
     done: list[Done] = []
-    for i, (job, keeper) in enumerate(zip(jobs, keepers, strict=True)):
+    for i, (job, saver) in enumerate(zip(jobs, savers, strict=True)):
 
         def part(fraction: float, i: int = i) -> None:
             progress((i + fraction) / len(jobs))
 
-        found = _shared(job, processes, partial(_run, job, keeper, part))
+        found = _shared(job, processes, partial(_run, job, saver, part))
         done += [found] if found else []
         part(1.0)
         if processes.is_first:
@@ -67,14 +67,14 @@ def execute(
 
 
 def _shared(job: Job, processes: Processes, work: Callable[[Processes], T]) -> T | None:
-    """Return `work` of the processes that share a job, None on those that do not."""
+    """Return the result of `work` on the processes that share a job, None on the others."""
     if solver(job.name).shares:
         return work(processes)
     return processes.by_first(lambda: work(ALONE))
 
 
-def _keeper(job: Job, settings: CheckpointSettings, processes: Processes) -> RunCheckpointer:
-    """Return the checkpoints of a job; raises SceneError if its result could not be written."""
+def _saver(job: Job, settings: CheckpointSettings, processes: Processes) -> RunCheckpointer:
+    """Return the checkpointer of a job; raises SceneError if its result cannot be written."""
     if job.path.is_dir():
         raise SceneError(str(job.path), "", None, "is a folder, must be a file")
     if job.path.exists() and not os.access(job.path, os.W_OK):
@@ -82,26 +82,25 @@ def _keeper(job: Job, settings: CheckpointSettings, processes: Processes) -> Run
     return RunCheckpointer(job.scene, job.name, job.path, settings, processes)
 
 
-def _run(
-    job: Job, keeper: RunCheckpointer, progress: Progress, processes: Processes
-) -> Done | None:
-    """Run a job, unless its result exists, and write its files; None but on the first process."""
-    result: Any = processes.by_first(keeper.finished)
+def _run(job: Job, saver: RunCheckpointer, progress: Progress, processes: Processes) -> Done | None:
+    """Run a job, unless its result exists, and write its files; None except on the first
+    process."""
+    result: Any = processes.by_first(saver.finished)
     if processes.told_by_first(lambda: result is None):
-        work = partial(solve, job.name, job.scene, progress, processes.comm, keeper)
+        work = partial(solve, job.name, job.scene, progress, processes.comm, saver)
         try:
             result, *cost = timings.timed(work)
         except StoppedError as error:
             processes.by_first(partial(_write_stopped, job, error))
             raise
-        processes.by_first(lambda: _write(job, keeper, result, *cost))
+        processes.by_first(lambda: _write(job, saver, result, *cost))
     elif result is not None:
         log_reading({job.path: result})
-    return processes.by_first(lambda: _done(job, keeper, result))
+    return processes.by_first(lambda: _done(job, saver, result))
 
 
 def _write_stopped(job: Job, error: StoppedError) -> None:
-    """Write the partial result of a stopped run, beside the path of its result."""
+    """Write the partial result of a stopped run next to the path of its result."""
     result, error.result = error.result, None
     if result is None:
         return
@@ -115,18 +114,19 @@ def _write_stopped(job: Job, error: StoppedError) -> None:
 
 
 def _write(
-    job: Job, keeper: RunCheckpointer, result: xr.Dataset, seconds: float, part: float
+    job: Job, saver: RunCheckpointer, result: xr.Dataset, seconds: float, part: float
 ) -> None:
-    """Write a result and note its cost, unless it was continued: only a part of it was timed."""
-    write_dataset(job.path, signed(result, keeper.signature, seconds))
-    if keeper.done:
+    """Write a result and save its cost, except of a continued run, of which only a part was
+    timed."""
+    write_dataset(job.path, signed(result, saver.signature, seconds))
+    if saver.done:
         job.path.with_suffix(STOPPED).unlink(missing_ok=True)
     else:
         timings.note(job.name, job.scene, result.attrs, seconds, part)
 
 
-def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
-    """Write the snapshots of a result and return its facts; its checkpoints are removed."""
+def _done(job: Job, saver: RunCheckpointer, result: xr.Dataset) -> Done:
+    """Write the snapshots of a result, remove its checkpoints, and return its facts."""
     has_ledger, fields = "energy" in result, list[str]()
     if job.scene.record.fields is not None and (found := snapshots_of(result)) is not None:
         fields.append(str(write_pvd(job.path.with_suffix(".pvd"), found)))
@@ -142,5 +142,5 @@ def _done(job: Job, keeper: RunCheckpointer, result: xr.Dataset) -> Done:
         "fields": fields,
     }
     done = Done(job, open_ledger(result) if has_ledger else "", facts)
-    keeper.files.remove()
+    saver.files.remove()
     return done

@@ -1,9 +1,8 @@
-"""Rates measured on this machine: the seconds of a step of one block or freedom, by kind of run;
-of a byte of the waveforms of an exact solution, by its kind; of what precedes the first step; and
-of what a command does beside its runs.
+"""Rates measured on this machine, for the estimates of `--dry-run`: seconds per step and block or
+freedom, by kind of run; per byte of waveforms of exact solutions; of set-up before the first step;
+and of the other tasks of a command.
 
-They are saved beside the compiled kernels, so that rates of other versions of the program are not
-used. `--dry-run` estimates the time of runs by them.
+They are saved with the compiled kernels, so that other versions of the program do not use them.
 """
 
 import json
@@ -32,22 +31,22 @@ from jointwave.results.dataset import scene_hash
 T = TypeVar("T")
 
 LARGEST_FILE = 10_000_000  # bytes
-SHORTEST = 0.01  # s: shorter runs do not replace a known rate
-CHANGED = 1.2  # a rate that has changed by this factor is rewritten
-#: Seconds of one of something, where none was timed on this machine.
+SHORTEST = 0.01  # s; shorter runs do not replace a known rate
+CHANGED = 1.2  # factor of change above which a rate is rewritten
+#: Default seconds of each task, if it was never timed on this machine.
 OTHERWISE = {
-    "exact": 0.3,  # solutions
-    "kernels": 3.0,  # compiled, for a kind of run
-    "explicit": 2e-8,  # steps of one block or freedom, also of schemes not named here
+    "exact": 0.3,  # per solution
+    "kernels": 3.0,  # compiling, per kind of run
+    "explicit": 2e-8,  # per step and block or freedom, also for schemes not listed
     "implicit": 5e-7,
-    "blocks": 5e-6,  # of a snapshot
+    "blocks": 5e-6,  # per snapshot and block
     "freedoms": 3e-7,
-    "blocks for ParaView": 1.7e-5,  # of a snapshot that is also written so
+    "blocks for ParaView": 1.7e-5,  # with snapshots as files
     "freedoms for ParaView": 2.3e-6,
-    "processes": 1.5,  # started, with their imports
+    "processes": 1.5,  # start with imports
     "diagrams": 4.0,  # of a study or of effects
     "frames": 0.05,  # of an animation
-    "figures": 1.0,  # for a variant, as are all below
+    "figures": 1.0,  # per variant, like all below
     "distances": 0.5,
     "tables": 1.5,  # of `compare --out`, with its figure
     "pages": 2.5,  # of a report
@@ -55,8 +54,8 @@ OTHERWISE = {
 
 
 def timed(work: Callable[[], T]) -> tuple[T, float, float]:
-    """Return the result of some work, its seconds, and the part of them that this process ran: less
-    than 1 where others compute at the same time."""
+    """Return the result of some work, its wall time, s, and the fraction of it in which this
+    process ran, less than 1 if others compute at the same time."""
     wall, cpu = perf_counter(), process_time()
     result = work()
     wall, cpu = perf_counter() - wall, process_time() - cpu
@@ -79,10 +78,10 @@ def note(
     seconds: float | None = None,
     part: float = 1.0,
 ) -> None:
-    """Store the rate of a run, unless it takes snapshots.
+    """Store the rate of a run, unless it takes snapshots, and its set-up time.
 
-    about : attributes of its result. seconds : in total, of which the steps are a part. part : of
-    all seconds that count, see `timed`.
+    about : attributes of its result. seconds : total; None: unknown. part : fraction of all seconds
+    to count, see `timed`.
     """
     seconds = None if seconds is None else part * seconds
     if name not in ENGINES:
@@ -100,13 +99,13 @@ def note(
 
 
 def setup(name: str, scene: AnyScene) -> float | None:
-    """Return the seconds of this very run before its first step; None if it was never timed."""
+    """Return the set-up seconds of this run before its first step; None if never timed."""
     return _known().get(_of_scene(name, scene)) if name in ENGINES else 0.0
 
 
 def stepping(name: str, scene: AnyScene, run: Prepared) -> float | None:
-    """Return the expected seconds of a run's steps, without those of its snapshots; None if no such
-    run was ever timed here."""
+    """Return the expected seconds of stepping without snapshots; None if no run of this kind was
+    timed on this machine."""
     if name not in ENGINES:
         rate = _known().get(_key(name, scene, {}))
         likely = None if rate is None else rate * waveform_bytes(scene)
@@ -117,14 +116,14 @@ def stepping(name: str, scene: AnyScene, run: Prepared) -> float | None:
 
 @contextmanager
 def measured(what: str, kind: str, count: float = 1) -> Iterator[None]:
-    """Store what one of `count` takes that this process does within; kind : of the scene."""
+    """Store the CPU seconds of the context per task, for `count` tasks; kind : of the scene."""
     began = process_time()
     yield
     _keep(f"{what} {kind}", (process_time() - began) / count)
 
 
 def each(what: str, kind: str) -> float:
-    """Return the seconds of one of something of `OTHERWISE`, as it was last timed here."""
+    """Return the seconds of a task of `OTHERWISE`, as last timed on this machine."""
     return _known().get(f"{what} {kind}", OTHERWISE[what])
 
 

@@ -1,5 +1,4 @@
-"""Bodies as the faces of their cells: moved, coloured, and projected onto a picture; of maps and
-films alike."""
+"""Bodies as faces of cells, displaced, coloured and projected, for maps and films."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -27,21 +26,21 @@ FACES = {
         *[[1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
     ],
 }
-FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # to the right and up per metre away from the viewer
-ABOVE = (0.4, 0.3)  # the same of a rock mass in space
+FRONT, OBLIQUE = (0.0, 0.0), (0.1, 0.4)  # shift to the right and up per metre of depth
+ABOVE = (0.4, 0.3)  # shift per metre of depth of a rock mass in space
 EDGE, WIDTH = "#333333", 0.4  # of the faces' edges, points
-MANY = 1000  # faces whose edges are thinner, in order not to hide the colours
-CELLS = 4000  # faces above which they have no edges
-LOUDEST = 99.8  # percentile that the last colour shows ...
-SPIKE = 1.25  # ... where the largest value exceeds it by this factor
+MANY = 1000  # faces above which edges are thinner, not to hide the colours
+CELLS = 4000  # faces above which edges are not drawn
+LOUDEST = 99.8  # percentile at the last colour ...
+SPIKE = 1.25  # ... if the largest value exceeds it by this factor
 
 
 class Body(NamedTuple):
-    """The outside of a body in the axes of a picture: to the right, away from the viewer, up.
+    """The surface of a body in the axes of a picture (right, away from the viewer, up).
 
-    rest : float array [nodes, 3], m, thickness as drawn. motion : float array [snapshots, nodes,
-    3], m, as drawn. faces : int array [faces, corners], nodes. values : float array [snapshots,
-    faces], shown by the colours, in the quantity's unit. block : int array [faces], of each.
+    rest : undeformed positions [nodes, 3], m, thickness as drawn. motion : drawn displacements
+    [snapshots, nodes, 3], m. faces : node indices [faces, corners]. values : of the colours
+    [snapshots, faces], in the quantity's unit. block : of each face [faces].
     """
 
     rest: np.ndarray
@@ -51,7 +50,7 @@ class Body(NamedTuple):
     block: np.ndarray
 
     def front(self) -> "Body":
-        """Return the faces nearest to the viewer alone."""
+        """Return only the faces nearest to the viewer."""
         along, away, _ = self.rest[self.faces].mean(axis=1).T
         near = away <= away.min() + 1e-6 * np.ptp(along)
         return self._replace(
@@ -59,8 +58,8 @@ class Body(NamedTuple):
         )
 
     def profile(self) -> pd.DataFrame:
-        """Return the mean value of the faces nearest to the viewer by instant, in columns by the
-        place along the axis."""
+        """Return the mean values of the faces nearest to the viewer: a row per instant, a column
+        per position along the axis."""
         front = self.front()
         along, values = front.rest[front.faces, 0].mean(axis=1), pd.DataFrame(front.values.T)
         return values.groupby(along.round(9)).mean().T
@@ -77,7 +76,7 @@ def body_of(s: Snapshots, settings: snapshots.ViewSettings) -> Body:
     if quantity in (snapshots.STRESS, snapshots.PRINCIPAL):
         assert s.stress is not None
         values = s.stress
-        if values.ndim > 2:  # the principal stress of larger size
+        if values.ndim > 2:  # principal stress of larger magnitude
             low, high = np.moveaxis(np.linalg.eigvalsh(tensors(values))[..., [0, -1]], -1, 0)
             values = np.where(-low > high, low, high)
         values = values[:, cells]
@@ -91,7 +90,8 @@ def body_of(s: Snapshots, settings: snapshots.ViewSettings) -> Body:
 
 
 def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
-    """Return the faces that one cell has, counter-clockwise from outside, and their cells."""
+    """Return the faces that belong to one cell only, counter-clockwise from outside, and the
+    indices of their cells."""
     rings = np.array(FACES[s.kind])
     faces = s.cells[:, rings].reshape(-1, rings.shape[1])
     cells = np.repeat(np.arange(len(s.cells)), len(rings))
@@ -106,12 +106,12 @@ def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _normals(corners: np.ndarray) -> np.ndarray:
-    """Return normals of faces [n, 3] by their corners [n, k, 3]."""
+    """Return normals [n, 3] of faces from their corners [n, k, 3]."""
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def _solid(s: Snapshots, side: float) -> Snapshots:
-    """Return snapshots with lines along y, and then sheets, thickened to the side of a section."""
+    """Return snapshots with lines, or sheets, thickened to a square section of this side, m."""
     for kind, thick, axis in (("line", "quad", 0), ("quad", "hexahedron", 2)):
         if s.kind == kind:
             half, other = side / 2 * np.eye(3)[axis], s.cells + len(s.points)
@@ -129,12 +129,12 @@ def _solid(s: Snapshots, side: float) -> Snapshots:
 def colours_of(
     every: list[np.ndarray], sign: str, colours: str | None = None, sizes: Sequence[np.ndarray] = ()
 ) -> tuple[ScalarMappable, float]:
-    """Return the colours of some values, symmetric around zero where they have a sign, and the part
-    of the values beyond them.
+    """Return the colour scale of some values, symmetric about zero if signed, and the fraction of
+    values beyond it.
 
-    The last colour is at the largest value, or at a percentile of all if few exceed it by far;
-    then the colour bar ends in an arrow. colours : other ones than ours. sizes : of the values of
-    each, of whose sum the part is; absent: all alike.
+    The scale ends at the largest value, or at a percentile if few values far exceed it; the colour
+    bar then ends in an arrow. colours : name of a colour map; None: the default. sizes : weights of
+    the values in the fraction; empty: equal.
     """
     found = [np.abs(values).ravel() for values in every]
     most = max(float(one.max(initial=0.0)) for one in found)
@@ -151,9 +151,9 @@ def colours_of(
 
 
 class BodyView:
-    """A body in axes, m, from the front or by an oblique parallel projection.
+    """A body in axes, m, seen from the front or in an oblique parallel projection.
 
-    per_away : what is farther by a metre is drawn by these to the right and up, m.
+    per_away : shift to the right and up per metre of depth, m.
     """
 
     def __init__(
@@ -164,10 +164,10 @@ class BodyView:
         self.farther = np.array([-right, 1.0, -up])  # along the line of sight
         drawn = (body.rest + body.motion) @ self.projection
         self.low, self.high = drawn.min(axis=(0, 1)), drawn.max(axis=(0, 1))
-        # Triangles, and many quadrilaterals, are parts of blocks.
+        # Triangles, and quadrilaterals if many, are only parts of blocks.
         edges = EDGE if body.faces.shape[1] > 3 and len(body.faces) <= CELLS else "face"
         width = WIDTH * min(1.0, MANY / len(body.faces))
-        # Edges that blend into the background would leave seams between faces of one colour.
+        # Antialiased edges would leave seams between faces of one colour.
         self.faces = PolyCollection(
             [], edgecolors=edges, linewidths=width, antialiaseds=edges == EDGE
         )
@@ -178,9 +178,8 @@ class BodyView:
         ax.set_ylim(self.low[1] - margin, self.high[1] + margin)
 
     def show(self, i: int) -> None:
-        """Update the picture to an instant; the nearest faces of the nearest block are drawn last.
-        Of a body seen obliquely those that face away are left out: they would cover others that
-        touch them."""
+        """Update the picture to an instant, drawing the nearest faces of the nearest block last. In
+        an oblique view faces turned away are left out, as they would cover adjacent faces."""
         corners, block = (self.body.rest + self.body.motion[i])[self.body.faces], self.body.block
         away = corners.mean(axis=1) @ self.farther
         count = np.maximum(np.bincount(block), 1)

@@ -1,4 +1,4 @@
-"""One frame of an animation: the bodies by each engine, the wave along a pillar, the clock."""
+"""The frame of an animation: the bodies of each engine, the wave along a pillar, the clock."""
 
 from math import ceil, log10
 from textwrap import wrap
@@ -21,15 +21,15 @@ from jointwave.compare.misfit.pairs import Comparison
 from jointwave.results.snapshots import Snapshots
 
 SIZE, PIXELS = (12.8, 7.2), (1280, 720)  # inches
-BODIES = 2.8  # inches of all pillars at most
+BODIES = 2.8  # largest total height of pillars, inches
 LETTERS = 85  # per line of the title
-TOWARDS = 0.05, -1.0, 0.35  # to the viewer of a window, in the axes of a body
-HEAD, STRIP = 0.7, 0.95  # inches above snapshots, and of a pillar
+TOWARDS = 0.05, -1.0, 0.35  # direction to the viewer of a window, in the axes of a body
+HEAD, STRIP = 0.7, 0.95  # heights of the header and of a pillar, inches
 
 
 class Frame:
-    """The frame of every instant: of a pillar with the wave along it and a waveform, of a rock mass
-    its bodies side by side.
+    """The frame of every instant: for a pillar the bodies, the wave along it and a waveform; for a
+    rock mass the bodies side by side.
 
     scale, quantity : see `settings_for`.
     """
@@ -73,7 +73,7 @@ class Frame:
             for artist in self.moving:
                 artist.set_animated(True)
             self.figure.canvas.draw()
-            self.figure.set_layout_engine("none")  # nothing that moves changes the layout
+            self.figure.set_layout_engine("none")  # moving parts do not change the layout
             self.background = self.figure.canvas.copy_from_bbox(self.figure.bbox)  # type: ignore[attr-defined]
 
     def show(self, i: int) -> None:
@@ -98,7 +98,7 @@ class Frame:
         return np.array(canvas.buffer_rgba())
 
     def _title(self) -> list[str]:
-        """Return the lines of the title: the scene, how it is drawn, and what does not apply."""
+        """Return the lines of the title: scene, exaggeration, and engines that do not apply."""
         scene, caption = self.simulated.scene, self.settings.caption
         stress = self.settings.quantity in (snapshots.STRESS, snapshots.PRINCIPAL)
         if stress and (scene.gravity or scene.prestress):
@@ -111,15 +111,15 @@ class Frame:
         return [line for words in (title, caption, *missing) for line in wrap(words, LETTERS)]
 
     def _add_bodies(self, axes: list[Axes], per_away: tuple[float, float]) -> None:
-        """Draw each body into axes, below its name."""
+        """Draw each body into its axes, with its name as title."""
         for ax, (name, body) in zip(axes, self.bodies.items(), strict=True):
             self.views[name] = bodies.BodyView(ax, body, self.colours, per_away)
             ax.set_title(label_of(name), color=style(name).colour, fontweight="bold")
         self.clock = axes[-1].set_title("", loc="right", fontsize=14)
 
     def _add_pillars(self) -> None:
-        """Draw the pillars one below the other; below them the colours' quantity along them, and
-        the first receiver's waveform as recorded, to be drawn up to each instant."""
+        """Draw the pillars one below the other, then the colours' quantity along them, and the
+        first receiver's waveform, which `show` draws up to an instant."""
         count = len(self.bodies)
         *axes, profile, waveform = self.figure.subplots(count + 2, 1)
         self._add_bodies(axes, bodies.OBLIQUE)
@@ -177,9 +177,9 @@ def draw_snapshots(name: str, scene: AnyScene, s: Snapshots) -> Figure:
 
 
 def open_window(frame: Frame, i: int) -> None:
-    """Open a window of a frame's bodies at instant i, one below the other, with a slider over all
+    """Open a window with a frame's bodies at instant i, one below the other, and a slider over all
     instants; return when it is closed."""
-    import pyvista  # an optional part
+    import pyvista  # optional dependency
 
     shown, time = frame.bodies, frame.time
     plotter = pyvista.Plotter(window_size=[1280, 720])

@@ -1,5 +1,5 @@
-"""Both engines' snapshots of one scene, at the instants of a picture or an animation, and the
-settings that show them: direction, exaggeration, and the quantity of the colours."""
+"""Snapshots of one scene by both engines, and the settings to draw them: direction of view,
+exaggeration, and quantity of the colours."""
 
 from math import ceil, floor, log10
 from typing import Any, NamedTuple
@@ -19,21 +19,20 @@ from jointwave.compare.misfit.metrics import motion
 from jointwave.compare.runs.reuse import NOWHERE, SNAPSHOTS, ResultFolder
 from jointwave.results.snapshots import Snapshots, snapshots_of
 
-#: Limits of drawn displacements: of any over the size of the scene; approach of two neighbours over
-#: the block's thickness; motion of a corner with respect to its cell over half the block's size.
+#: Limits of drawn displacements: largest over the size of the scene; approach of two neighbours
+#: over the block's thickness; motion of a corner relative to its cell over half the block's size.
 FARTHEST, CLOSER, TURNED = 0.04, 0.8, 0.35
 THIN = 0.045  # smallest legible ratio of the pillar's height to its length
-SILENT = 0.1  # axial stress over that of a plane wave of this motion: below it no axial wave
-DEGENERATE = 1.01  # ratio of the squared motions across the axis below which neither prevails
+SILENT = 0.1  # axial stress over impedance times velocity, below which the wave is not axial
+DEGENERATE = 1.01  # ratio of squared transverse motions, below which no direction prevails
 X, Y, Z = np.eye(3)
 
 
 class SceneSnapshots(NamedTuple):
     """One scene with each engine's snapshots.
 
-    scene : of either kind, with the instants in its record. found : by engine, all at the same
-    instants. reasons : by engine, why it has none. results : by engine, with the waveforms as
-    recorded.
+    scene : pillar or rock mass, which records these instants. found : snapshots by engine, at the
+    same instants. reasons : why engines do not apply. results : recorded waveforms by engine.
     """
 
     scene: Any
@@ -53,21 +52,21 @@ def take(
     progress: Progress | None = None,
     stored: ResultFolder = NOWHERE,
 ) -> SceneSnapshots:
-    """Simulate a scene with both engines and return snapshots of each, one per interval, s.
+    """Simulate a scene with both engines and return their snapshots.
 
-    interval : None: those that the scene records itself. stored : a folder of results. The stress
-    is that of the motion, minus the static state. The rock is jointed if that model applies, else
-    homogenised. Raises SceneError and UnstableError as the engines do, and SceneError if none
-    applies.
+    interval : s; None: the scene's own. stored : a folder of results. Stress is relative to the
+    static state. The rock is jointed if that model applies, else homogenised. Raises SceneError and
+    UnstableError as the engines do, and SceneError if none applies.
     """
-    asked = scene if interval is None else with_snapshots(scene, interval)
-    shown = shown_engines(asked)
-    reasons = {name: answer.reason for name in ENGINES if not (answer := applies(name, asked))}
+    recorded = scene if interval is None else with_snapshots(scene, interval)
+    shown = shown_engines(recorded)
+    reasons = {n: answer.reason for n in ENGINES if not (answer := applies(n, recorded))}
     if not shown:
         why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
         raise SceneError(scene.where, "", None, f"no engine has snapshots of it: {why}")
     found, results = {}, {}
-    for name, result in stored.solve(shown, asked, progress, "" if interval is None else SNAPSHOTS):
+    suffix = "" if interval is None else SNAPSHOTS
+    for name, result in stored.solve(shown, recorded, progress, suffix):
         taken = snapshots_of(result)
         assert taken is not None
         if taken.stress is not None:
@@ -75,11 +74,11 @@ def take(
             taken = taken._replace(stress=motion(field)["stress"].values)
         found[name] = taken
         results[name] = result[[q for q in UNITS if q in result]]
-    return SceneSnapshots(asked, found, {} if len(found) > 1 else reasons, results)
+    return SceneSnapshots(recorded, found, {} if len(found) > 1 else reasons, results)
 
 
 def shown_engines(scene: AnyScene) -> list[str]:
-    """Return the rigid blocks and the model of the rock that are shown, those that apply."""
+    """Return the first two engines that apply: rigid blocks and a model of the rock."""
     return [name for name in ENGINES if applies(name, scene)][:2]
 
 
@@ -91,8 +90,8 @@ def with_snapshots(scene: AnyScene, interval: float) -> AnyScene:
 
 
 class Quantity(NamedTuple):
-    """The quantity of the colours with its unit, the factor from SI to it, and the meaning of its
-    sign, "" if unsigned."""
+    """The quantity of the colours: name with unit, factor from SI, meaning of the sign ("" if
+    unsigned)."""
 
     name: str
     factor: float = 1.0
@@ -115,9 +114,9 @@ SLIP = Quantity("slip of joints (mm)", 1e3)
 class ViewSettings(NamedTuple):
     """Settings for drawing a scene.
 
-    up, right : unit vectors [3] of the picture: y of a pillar is to the right, x of a rock mass.
-    scale : of the displacements. stretch : of the thickness as seen. quantity : shown by the
-    colours. side : of the section of a pillar, m, which its lines and sheets are drawn with.
+    up, right : unit vectors [3] of the picture; right is y of a pillar, x of a rock mass.
+    scale : factor of displacements. stretch : factor of the thickness. quantity : of the colours.
+    side : of the square section with which lines and sheets of a pillar are drawn, m.
     """
 
     up: np.ndarray
@@ -135,8 +134,7 @@ class ViewSettings(NamedTuple):
 
 
 def quantities_of(scene: AnyScene) -> dict[str, Quantity]:
-    """Return what the colours can show of a pillar or of a rock mass, by name; the stress of a
-    pillar is that along it."""
+    """Return the quantities that colours can show, by name; the stress of a pillar is axial."""
     if scene.is_column:
         return {"stress": STRESS, "speed": SPEED, "across": VELOCITY}
     return {"speed": SPEED, "stress": PRINCIPAL}
@@ -150,9 +148,9 @@ def settings_for(
 ) -> ViewSettings:
     """Return the view settings for snapshots by engine.
 
-    scale, quantity : of displacements and of the colours, instead of ours. A pillar is seen so that
-    most of its motion across the axis is upwards, a rock mass in its plane or, in space, from the
-    south.
+    scale, quantity : of displacements and colours; None: chosen here. A pillar is turned so that
+    most of its transverse motion is upwards; a rock mass is seen in its plane or, in space, from
+    the south.
     """
     up, stretch = Z if scene.in_space else Y, 1.0
     if scene.is_column:  # a thin one is drawn thicker
@@ -167,7 +165,7 @@ def settings_for(
     squares, axes = np.linalg.eigh(across.T @ across)
     x, z = axes[:, 1] if squares[1] > DEGENERATE * squares[0] else (1.0, 0.0)  # else x
     up, plane = np.array([x, 0.0, z]) * np.sign(x + z or 1.0), calibrate(scene).impedance
-    silent = is_spatial(scene) and any(  # then the wave is transverse
+    silent = is_spatial(scene) and any(  # the wave is transverse
         s.stress is None or np.abs(s.stress).max() < SILENT * plane * np.abs(s.velocity).max()
         for s in found.values()
     )
@@ -176,7 +174,7 @@ def settings_for(
 
 
 def _largest_scale(scene: AnyScene, s: Snapshots, stretch: float) -> float:
-    """Return the largest exaggeration of displacements that keeps a scene recognisable."""
+    """Return the largest exaggeration of displacements within the limits above."""
     moved = float(np.abs(s.displacement).max(axis=(0, 1)) @ [stretch, 1.0, stretch])
     limits = [(FARTHEST * float(np.ptp(s.points, axis=0).max()), moved)]
     if scene.is_column:

@@ -1,4 +1,4 @@
-"""Films as MP4 or GIF, by the ffmpeg of imageio-ffmpeg."""
+"""Films as MP4 or GIF, written by the ffmpeg of imageio-ffmpeg."""
 
 from collections.abc import Iterable
 from contextlib import suppress
@@ -13,14 +13,14 @@ from imageio_ffmpeg import get_ffmpeg_exe
 from jointwave.cases.errors import SceneError
 from jointwave.compare.runs.output import FILMS, check_out, write
 
-#: Every player shows H.264 in 4:2:0; its index comes first, so that it plays while it loads. Each
-#: frame of a GIF has a palette, so that ffmpeg need not have all frames in memory.
+#: H.264 in 4:2:0, which every player shows, with the index first, so that it plays while loading.
+#: Each frame of a GIF has its palette, so that ffmpeg need not hold all frames in memory.
 PALETTES = "split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=none"
 ENCODING = {
     ".mp4": ["-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"],
     ".gif": ["-filter_complex", PALETTES],
 }
-#: Images a second that files of a kind can hold; a GIF counts hundredths of a second.
+#: Largest frame rates, per second; the time unit of a GIF is a hundredth of a second.
 MOST = {".mp4": 1000.0, ".gif": 100.0}
 
 
@@ -42,7 +42,7 @@ def write_video(
         command = [get_ffmpeg_exe(), "-y", "-v", "error", *raw, *ENCODING[path.suffix], str(new)]
         with Popen(command, stdin=PIPE) as ffmpeg:
             assert ffmpeg.stdin is not None
-            with suppress(BrokenPipeError):  # its return code tells
+            with suppress(BrokenPipeError):  # the return code is checked below
                 for image in images:
                     ffmpeg.stdin.write(image.tobytes())
         if ffmpeg.returncode:

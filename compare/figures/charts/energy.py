@@ -11,15 +11,15 @@ from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.solvers.record import Line
 
 MOST = 480  # samples of a curve, and of the table
-LEAST = 1e-17  # lower limit of a drawn residual: below round-off
+LEAST = 1e-17  # least residual drawn, below round-off
 DASHES = "-", (0, (5, 2)), (0, (1.2, 1.6))  # of engines
 COLUMNS = {term: f"{term} (J)" for term in TERMS}
 RESIDUAL = "residual (of the largest work)"
 
 
 def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the figure of all ledgers; empty if no engine recorded one. Colours distinguish terms,
-    dashes engines; terms that are zero throughout are not drawn."""
+    """Return the figure of all ledgers; empty if no engine recorded one. Colours show terms, dashes
+    engines; terms that stay zero are not drawn."""
     ledgers = ledgers_of(comparisons)
     largest = ledgers.filter(COLUMNS.values()).abs().max().max()
     if ledgers.empty or not largest:
@@ -58,11 +58,10 @@ def energy(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
 
 
 def ledgers_of(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return the ledgers of all engines and variants: a row per sample; terms missing in a run are
-    empty.
+    """Return the ledgers of all engines and variants, a row per sample; missing terms are empty.
 
-    All terms count from the first sample. residual : the sum of all others minus the work, over
-    the largest work or, without work, the largest term.
+    All terms are relative to the first sample. The residual is the sum of all other terms minus the
+    work, over the largest work or, without work, the largest term.
     """
     parts = [pd.DataFrame()]
     for variant, comparison in named(comparisons):

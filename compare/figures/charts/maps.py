@@ -1,4 +1,4 @@
-"""Drawn maps of bodies: beside each other on one colour scale, and the difference of two."""
+"""Maps of bodies with a common colour scale, and the difference of two maps."""
 
 from textwrap import fill
 from typing import Any
@@ -28,9 +28,9 @@ from jointwave.results.dataset import A_RESULT
 
 FLAT = 0.4  # height over width of a body, below which maps are one below the other
 TALLEST = 0.7  # height of a single map over the width of the figure
-BAR, TITLE, BESIDE = 0.9, 0.25, 0.7  # inches: of a colour bar, above a map, and beside it
-JOINT, WIDTH = "#333333", 60.0  # colour of joints; width (points) of all of them together
-SLIPPED = 1.6  # points, width of joints with the colour of their slip
+BAR, TITLE, BESIDE = 0.9, 0.25, 0.7  # inches of a colour bar, above a map, beside it
+JOINT, WIDTH = "#333333", 60.0  # colour of joints; sum of the widths of all joints, points
+SLIPPED = 1.6  # width of joints coloured by slip, points
 PEAKS = (
     "The largest particle velocity of each cell, the mean of its nodes', over all snapshots "
     "(record.fields): peaks between snapshots are missed."
@@ -47,13 +47,13 @@ def plot_map(
 ) -> Figure:
     """Return the map of a quantity over a result's body, or of two results and their difference.
 
-    result, other : with snapshots (`record.fields`), of one body. quantity : "ppv", the largest
-    particle velocity over all snapshots; "speed"; "stress", along a pillar, else the principal
-    stress of larger size in the plane; "slip" of joints. time : s, of the snapshot; None: that in
-    which the mean square is largest. width : of the figure, mm. font_size : points.
+    result, other : with snapshots (`record.fields`), of the same body. quantity : "ppv", the
+    largest particle velocity over all snapshots; "speed"; "stress", axial in a pillar, else the
+    in-plane principal stress of larger magnitude; "slip" of joints. time : of the snapshot, s;
+    None: the one with the largest mean square. width : of the figure, mm. font_size : points.
 
-    Both results share one colour scale. Where few values are far beyond it, the colour bar ends in
-    an arrow and says how much of the body they are. The difference is the second less the first.
+    Both results share one colour scale. If few values far exceed it, the colour bar ends in an
+    arrow and states their share of the body. The difference is the second minus the first.
     Raises SceneError without snapshots, for another quantity or time, and for different bodies.
     """
     given = [result] if other is None else [result, other]
@@ -64,7 +64,7 @@ def plot_map(
 
 
 def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) -> Figure:
-    """Return maps of one scene by name: side by side, flat ones one below the other."""
+    """Draw the maps of one scene, with names: side by side, or if flat one below the other."""
     first, every, less = next(iter(maps.values())), [*maps.values()], dict[str, Map]()
     if len(maps) == 2:
         less = {" − ".join(reversed(maps)): difference(*every)}
@@ -80,7 +80,7 @@ def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) ->
             axes = figure.subplots(1, count, sharey=True, squeeze=False)[0]
             height = min(ratio * room / count, TALLEST * width) + (BAR + 2 * TITLE) * inch
         figure.set_figheight(height + TITLE * inch)
-        letters = 72 / (LETTER * rcParams["font.size"])  # an inch
+        letters = 72 / (LETTER * rcParams["font.size"])  # per inch
         _draw(axes[: len(maps)], maps, first.quantity.sign, None, first.quantity.label, letters)
         if less:
             unit = f"difference ({first.quantity.name.partition(' (')[2]}"
@@ -104,7 +104,7 @@ def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) ->
 def _draw(
     axes: Any, maps: dict[str, Map], sign: str, hues: str | None, label: str, letters: float
 ) -> None:
-    """Draw maps by name into axes, and their colour bar below; letters : in an inch."""
+    """Draw maps by name into axes, with a colour bar below; letters : per inch."""
     every, figure = [*maps.values()], axes[0].figure
     columns = axes[0].get_subplotspec().get_gridspec().ncols
     values, sizes = [one.values for one in every], [one.sizes for one in every]
@@ -124,12 +124,12 @@ def _draw(
 
 
 def _draw_one(ax: Axes, one: Map, colours: ScalarMappable) -> None:
-    """Draw a map into axes, its joints above it."""
+    """Draw a map into axes, with joints on top."""
     faces = PolyCollection(list(one.corners), rasterized=len(one.corners) > MANY)
     valued: PolyCollection | LineCollection = faces
     if one.quantity == SLIP:
         faces.set(facecolor=ROCKS[0], edgecolor="face")
-        order = np.abs(one.values).argsort()  # the largest is drawn last
+        order = np.abs(one.values).argsort()  # largest last, on top
         one = one._replace(joints=one.joints[order], values=one.values[order])
         edges = LineCollection(list(one.joints), linewidth=SLIPPED, capstyle="round")
         valued = edges
@@ -145,8 +145,8 @@ def _draw_one(ax: Axes, one: Map, colours: ScalarMappable) -> None:
 
 
 def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the maps of peak velocity, one figure per variant; empty but for a rock mass in the
-    plane with snapshots of the whole field."""
+    """Return the maps of peak velocity, one figure per variant; empty except for a rock mass in the
+    plane with snapshots."""
     found = []
     for k, (variant, one) in enumerate(named(comparisons)):
         results = [one.results[engine] for engine in in_order(one.results)]

@@ -1,8 +1,8 @@
 """Propagation along a row of receivers: transfer function, phase speed and loss over frequency.
 
-The transfer function and 1/Q are those from the first receiver of velocity to the last, the phase
-speed that of the f-k spectrum of all of them (`compare.readings`), with the theory of an infinite
-pillar (`dispersion_theory`).
+The transfer function and 1/Q are between the first and last velocity receivers; the phase speed is
+from the f-k spectrum of all receivers (`compare.readings`). Theory is that of an infinite pillar
+(`dispersion_theory`).
 """
 
 from contextlib import suppress
@@ -26,10 +26,10 @@ from jointwave.compare.readings.attenuation import (
 from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
 
 LEAST = 3  # receivers of a row
-HEARD = 0.03  # of the first receiver's largest amplitude: threshold of drawn frequencies
-TOLD_APART = 0.95  # of the frequency at which two receivers are half a wavelength apart
+HEARD = 0.03  # least amplitude of drawn frequencies, over the largest at the first receiver
+ALIASED = 0.95  # of the frequency at which neighbouring receivers are half a wavelength apart
 NAMES = TRANSFER, SPEED, LOSS = "transfer function", "phase speed (m/s)", "1/Q"
-#: The solution with the model of each theory, which gives its line style.
+#: The solution whose model each theory has; the theory takes its line style.
 THEORY = {
     "rigid blocks, theory": "lattice",
     "jointed rock, theory": "jointed-bar",
@@ -68,19 +68,19 @@ def propagation(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
 
 
 def curves_of(comparison: Comparison) -> Curves:
-    """Return the curves of one variant; empty if fewer than LEAST receivers have a motion."""
+    """Return the curves of one variant; empty unless LEAST or more receivers on a line all move."""
     found: Curves = {}
     for solution in in_order(comparison.results):
         result = comparison.results[solution]
         if "velocity" in result and len(result["velocity"]) >= LEAST:
             row = waveforms(result)
             if (row != 0).any("time").all() and row["distance"].diff("receiver").min() > 0:
-                with suppress(SceneError):  # receivers that are not on a line
+                with suppress(SceneError):  # receivers not on a line
                     found[solution] = _measured(result, row)
     if not found:
         return found
     frequency = next(iter(found.values()))[TRANSFER].index.values
-    with suppress(SceneError):  # no theory of this scene
+    with suppress(SceneError):  # no theory for this scene
         theory = dispersion_theory(comparison.scene, frequency)
         for rock in theory.rock.values:
             speed, quality = (theory.sel(rock=rock)[n] for n in ("phase_speed", "quality"))
@@ -90,12 +90,12 @@ def curves_of(comparison: Comparison) -> Curves:
 
 
 def _measured(result: xr.Dataset, row: xr.DataArray) -> dict[str, pd.Series]:
-    """Return one result's curves at the frequencies that the first receiver has; row : its
-    velocities."""
+    """Return one result's curves at the frequencies present at the first receiver; row : velocities
+    of its receivers."""
     first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(transfer_function(result))
     speed, nearest = dispersion(result).phase_speed, row["distance"].diff("receiver").min()
     apart = abs(wave_speed(result)) / (2 * float(nearest))
-    speed = speed[speed.frequency.values < TOLD_APART * apart]
+    speed = speed[speed.frequency.values < ALIASED * apart]
     heard = (first > HEARD * first.max()) & (transfer.frequency.values > 0)
     every = transfer, speed, 1 / quality_factor(result).quality
     found = (pd.Series(one.values, one.frequency.values) for one in every)

@@ -1,4 +1,4 @@
-"""Space-time diagrams: y along the pillar over time, the motion as colour, by an engine, and the
+"""Space-time diagrams: the motion of an engine as colour over time and y along the pillar, and the
 differences between engines or from exact solutions.
 """
 
@@ -17,7 +17,7 @@ from jointwave.compare.figures.style import DIFFERENCE, FIELD, UNITS, Unit, unit
 from jointwave.compare.misfit.pairs import pairs
 from jointwave.compare.misfit.ranking import own_exact
 
-LEAST = 1e-9  # SI: smaller values count as no motion
+LEAST = 1e-9  # SI; smaller values count as no motion
 HEIGHT = 2.9  # inches
 CAPTION = (
     "Motion relative to the static state: compression is red, tension blue. A difference has its "
@@ -26,8 +26,8 @@ CAPTION = (
 
 
 class Diagram(NamedTuple):
-    """One diagram: its name, a heading with the unit and the range or the size of a difference, its
-    values [places, times] in `unit`, and its colour map."""
+    """One diagram: its name, a heading with unit and range, its values [positions, times] in
+    `unit`, and its colour map."""
 
     name: str
     heading: str
@@ -39,11 +39,11 @@ class Diagram(NamedTuple):
 def space_time(
     name: str, scene: Scene, variant: str, fields: dict[str, xr.Dataset]
 ) -> list[SceneFigure]:
-    """Return the figures of one variant: of the first engine and the differences between engines,
-    and, folded, of the differences from the exact solution of each engine's own model.
+    """Return the figures of one variant: the first engine with the differences between engines;
+    and, folded, the differences of engines from the exact solutions of their own models.
 
     Empty without motion. name : unique on the page. variant : its name there. fields : results by
-    name, as returned by `along_pillar`.
+    name, from `along_pillar`.
     """
     engines = [engine for engine in in_order(fields) if engine in ENGINES]
     if not engines:
@@ -56,13 +56,13 @@ def space_time(
         return []
 
     def diagram(one: str, other: str = "") -> Diagram:
-        """Return the motion by one solution, or less that by another one."""
+        """Return the motion of one solution, or its difference from another."""
         shown = values[one] - values[other] if other else values[one]
         largest = float(np.abs(shown).max())
         unit = unit_for(UNITS[quantity], largest)
         shown = shown / unit.size
         if not other:
-            inner = shown[1:-1]  # the ends' stress is that of the load
+            inner = shown[1:-1]  # at the ends stress is prescribed by the load
             least, most = (f"{x + 0.0:.4g}".replace("-", "−") for x in (inner.min(), inner.max()))
             size = f"\n({unit.name})\nbetween the ends {least} to {most}"
             return Diagram(label_of(one), label_of(one) + size, shown, unit, FIELD)
@@ -87,7 +87,7 @@ def space_time(
 def _figure(
     name: str, title: str, scene: Scene, time: np.ndarray, y: np.ndarray, shown: list[Diagram]
 ) -> SceneFigure:
-    """Return the figure of diagrams over time [n] (s) and y [m] (m)."""
+    """Return the figure of diagrams over time [n], s, and y [m], m."""
     columns, ms = max(len(shown), 2), 1e3 * time
     with blank(HEIGHT) as figure:
         axes = figure.subplots(1, columns, sharex=True, sharey=True, squeeze=False)[0]

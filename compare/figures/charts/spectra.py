@@ -20,16 +20,16 @@ HEIGHT = 2.1  # inches
 DECADES = 5  # drawn below the largest amplitude
 NEAR = 1.25  # ratio of two marks below which their names are on opposite sides
 TAPERED = 0.1  # of the waveform, at its end
-PADDED = 2  # times its length, at least, to the next power of two
+PADDED = 2  # least ratio of the padded length (a power of two) to the length
 LOAD, CUT_OFF = "load", "chain cut-off"
-#: Marks in words, and where spectra end over the frequency of a mark.
+#: Marks in words, and the end of the spectra over the frequency of the mark.
 MARKS = {LOAD: ("1/T of the load", 25.0), CUT_OFF: ("cut-off of the chain of blocks", 2.5)}
 
 
 def marks_of(panel: Panel) -> list[tuple[str, float]]:
-    """Return the marks of a panel, name and frequency (Hz), in order: of the load and, of a pillar,
-    the cut-off of a chain, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946), of the least c/d: that of
-    longitudinal waves or, if blocks do not rotate, of shear waves."""
+    """Return the marks of a panel, name and frequency (Hz), in order: the load and, for a pillar,
+    the cut-off of the chain of blocks, omega = 2 sqrt(k/m) = 2 c/d (Brillouin 1946) with the least
+    c/d, for longitudinal waves or, if blocks do not rotate, shear waves."""
     scene, (quantity, component, _) = panel.comparison.scene, panel.place
     found = [(LOAD, 1 / one.period) for one in scene.pulses if one.period]
     if scene.is_column:
@@ -43,8 +43,7 @@ def marks_of(panel: Panel) -> list[tuple[str, float]]:
 
 
 def tapered(values: np.ndarray) -> np.ndarray:
-    """Return waveforms [n, ...] whose last tenth is brought to zero by half a cosine (Harris
-    1978)."""
+    """Return waveforms [n, ...] with the last tenth tapered by half a cosine (Harris 1978)."""
     room = max(1, round(TAPERED * len(values)))
     after = np.arange(1 - len(values), 1) / room + 1  # from 0 to 1 within the last tenth
     window = 0.5 * (1 + np.cos(np.pi * np.clip(after, 0, 1)))
@@ -52,10 +51,10 @@ def tapered(values: np.ndarray) -> np.ndarray:
 
 
 def spectrum(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies (Hz) and dt |DFT| of the tapered waveforms [n, ...], padded by zeros: the
-    size of their Fourier transforms, per Hz.
+    """Return frequencies (Hz) and dt |DFT|, the Fourier amplitude per Hz, of the tapered waveforms
+    [n, ...], padded with zeros.
 
-    By Parseval's theorem the integral of twice its square over frequency is that of the squared
+    By Parseval's theorem the integral of twice its square over frequency equals that of the squared
     tapered waveform over time.
     """
     length = 1 << int(np.ceil(np.log2(PADDED * len(values))))
@@ -64,7 +63,7 @@ def spectrum(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
 
 def spectra_of(panel: Panel) -> pd.DataFrame:
     """Return the spectra of a panel's solutions, a column each: amplitude per Hz, SI, over
-    frequency (Hz), from one wave in the duration to beyond the marks."""
+    frequency (Hz), from 1 / duration to beyond the marks."""
     time = panel.curves.index.values
     frequency, amplitude = spectrum(panel.curves.to_numpy(), float(time[1] - time[0]))
     end = max((MARKS[name][1] * at for name, at in marks_of(panel)), default=np.inf)
@@ -94,7 +93,7 @@ def spectra(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
 
 
 def _draw(grid: list[list[tuple[Panel, pd.DataFrame]]]) -> Figure:
-    peaks: dict[str, float] = {}  # of all panels of one unit, SI
+    peaks: dict[str, float] = {}  # largest value of all panels by unit, SI
     for panel, curves in (one for row in grid for one in row):
         peaks[panel.unit] = max(peaks.get(panel.unit, 0.0), curves.max(axis=None))
     with chart(len(grid), max(map(len, grid)), [HEIGHT], "frequency (Hz)") as (figure, axes):
@@ -112,8 +111,8 @@ def _draw(grid: list[list[tuple[Panel, pd.DataFrame]]]) -> Figure:
 
 
 def _draw_marks(ax: Axes, panel: Panel, largest: pd.Series, middle: float) -> None:
-    """Draw the marks; a name is to the left if the next mark is near, and at the top where the
-    curves, at most `largest`, are below `middle`."""
+    """Draw the marks. A name is on the left if the next mark is near, and at the top if the curves,
+    at most `largest`, are below `middle` there."""
     marks = marks_of(panel)
     following = [at for _, at in marks[1:]] + [np.inf]
     for (name, at), after in zip(marks, following, strict=True):

@@ -1,5 +1,5 @@
-"""Waveforms at every receiver over time, and below them their residuals from the reference on a
-separate scale: every solution of a variant, or the variants of one engine, as in the paper.
+"""Waveforms at every receiver, with their residuals from the reference below on a separate scale:
+every solution of a variant, or the variants of one engine as in the paper.
 """
 
 from collections.abc import Sequence
@@ -29,15 +29,15 @@ from jointwave.compare.figures.style import (
 from jointwave.compare.misfit.pairs import A_COMPARISON, Comparison
 from jointwave.compare.solvers.record import Line
 
-#: Keys of a scene that do not change its physics, or only its numerical solution.
+#: Keys of a scene that do not change its physics.
 ASIDE = {"title", "source", "name", "expect", "numerics", "record", "where"}
 MOST = 6  # variants in one pair of axes
-ROWS = 8  # of axes in the first figure: the rest of many receivers is folded
+ROWS = 8  # most rows of axes in the first figure; the others are folded
 HEIGHTS = [1.9, 0.7]  # inches of waveforms and of their residuals
-NARROW = 3.3  # inches of a panel: figures of twice its width have two side by side
-THIN = 1.4  # points, the widest line of residuals
+NARROW = 3.3  # least width of a panel for two side by side, inches
+THIN = 1.4  # largest line width of residuals, points
 REFERENCE = "reference"
-#: Colours of variants, light to dark: of up to four, then of up to six.
+#: Colours of variants, light to dark: for up to four, then for up to six.
 VARIANTS = (
     *("#9ad14b", "#e0559f", "#3b6fd4", "#1b0c3f"),
     *("#a5d65a", "#e68ab8", "#3f8fd6", "#b5432e", "#4b3fa8", "#000000"),
@@ -67,7 +67,7 @@ class Trace(NamedTuple):
 class Overlay(NamedTuple):
     """Waveforms of one quantity in one pair of axes.
 
-    at_rest : the static state subtracted from them, SI. reference : of the residuals, in words.
+    at_rest : the static state subtracted from them, SI. reference : of the residuals, its label.
     """
 
     heading: str
@@ -78,11 +78,11 @@ class Overlay(NamedTuple):
 
 
 def waveforms(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the waveforms of every variant at every receiver, with external curves; the first
-    figure is of at most ROWS rows, the others are folded.
+    """Return the figures of every variant's waveforms at every receiver, with external curves; the
+    first has at most ROWS rows, the others are folded.
 
-    Variants that differ by one key share one pair of axes per engine, followed by all solutions of
-    each variant; otherwise the first variant stands before the others.
+    Variants that differ by one key share axes, engine by engine, followed by all solutions of each
+    variant; otherwise the first variant has its own figure.
     """
     overlaid, table = by_variant(comparisons), curve_table(comparisons)
     if not (rows := in_rows(comparisons)):
@@ -123,7 +123,7 @@ def figure(
 def draw_solutions(
     comparisons: list[Comparison], residuals: bool = True, rc: dict[Any, Any] = RC
 ) -> Figure:
-    """Return every solution of all variants; each variant begins a row."""
+    """Return the figure of every solution of all variants; each variant starts a new row."""
     across = 2 if rc["figure.figsize"][0] > 2 * NARROW else 1
     grid = [[by_solution(panel) for panel in row] for row in in_rows(comparisons, across)]
     return draw_overlays(grid, residuals, rc)
@@ -132,7 +132,7 @@ def draw_solutions(
 def draw_overlays(
     grid: list[list[Overlay]], residuals: bool = True, rc: dict[Any, Any] = RC
 ) -> Figure:
-    """Return the figure of overlays in rows; residuals : whether they have axes of their own."""
+    """Return the figure of overlays in rows; residuals : whether to draw them, in separate axes."""
     traces = [t for row in grid for overlay in row for t in overlay.traces]
     residuals = residuals and any(t.residual is not None for t in traces)
     heights, columns = HEIGHTS if residuals else HEIGHTS[:1], max(map(len, grid))
@@ -153,7 +153,7 @@ def draw_overlays(
 def draw_waveforms(ax: Axes, overlay: Overlay) -> None:
     """Draw an overlay into axes, without its residuals."""
     unit = DRAWN[UNITS[overlay.quantity]]
-    # A velocity has no static state but the remainder of a relaxation.
+    # The static velocity is only a remainder of the relaxation.
     rests = overlay.at_rest and overlay.quantity != "velocity"
     rest = f"\nless {overlay.at_rest / unit.size:.4g} at rest" if rests else ""
     set_heading(ax, overlay.heading)
@@ -185,7 +185,7 @@ def _plot(ax: Axes, size: float, traces: list[Trace]) -> None:
 
 
 def by_solution(panel: Panel) -> Overlay:
-    """Return every solution of one variant at one receiver, and external curves."""
+    """Return the overlay of all solutions and external curves of one panel."""
     residuals = panel.residuals
     traces = [
         Trace(label_of(name), style(name), curve, residuals.get(name))
@@ -201,9 +201,9 @@ def by_solution(panel: Panel) -> Overlay:
 
 
 def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
-    """Return the variants of each engine in one pair of axes, engines across and receivers down.
+    """Return overlays of the variants, a column per engine and a row per receiver.
 
-    Empty if variants differ by more than one key, or share no place that is shown.
+    Empty unless variants differ by exactly one key and share a panel.
     """
     if not 2 <= len(comparisons) <= MOST or changed_key(comparisons) is None:
         return []
@@ -215,7 +215,7 @@ def by_variant(comparisons: list[Comparison]) -> list[list[Overlay]]:
 
 
 def _of_engine(engine: str, row: list[Panel]) -> Overlay:
-    """Return an engine's waveform in every variant, and the reference of each as dots."""
+    """Return the overlay of an engine's waveforms in all variants, with dotted references."""
     traces, references = list[Trace](), list[tuple[str, Trace]]()
     for panel, drawn in zip(row, variant_styles(len(row)), strict=True):
         curves, known = panel.curves, panel.reference
@@ -232,8 +232,8 @@ def _of_engine(engine: str, row: list[Panel]) -> Overlay:
 
 
 def variant_styles(count: int) -> list[Line]:
-    """Return the styles of superposed variants: the first wide and light, the last thin and dark,
-    so that each is visible where they coincide."""
+    """Return the styles of overlaid variants, from wide and light to thin and dark, so that each is
+    visible where they coincide."""
     few = VARIANTS[:4] if count <= 4 else VARIANTS[4:]
     at = np.linspace(0, len(few) - 1, count).round().astype(int)
     widths = np.linspace(3.4, 1.0, count).round(2).tolist()
@@ -241,8 +241,8 @@ def variant_styles(count: int) -> list[Line]:
 
 
 def changed_key(comparisons: list[Comparison]) -> str | None:
-    """Return the one key in which the variants of a scene differ, "joints.damping_ratio"; None if
-    they differ in none or in several."""
+    """Return the key in which variants differ, such as "joints.damping_ratio"; None if there is not
+    exactly one."""
     scenes = [comparison.scene.model_dump(exclude=ASIDE) for comparison in comparisons]
     keys = pd.json_normalize(scenes, max_level=1).map(repr)
     changed = keys.columns[keys.nunique() > 1]

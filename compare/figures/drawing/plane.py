@@ -1,5 +1,5 @@
-"""The drawing of a scene in the plane: blocks by their rock, joints by their set, sides by what
-holds them, and what acts. A pillar is seen from the side, y to the right and x up.
+"""The drawing of a scene in the plane: blocks by rock, joints by set, sides by boundary condition,
+and loads. A pillar is seen from the side, y to the right and x up.
 """
 
 from typing import Any
@@ -21,11 +21,11 @@ from jointwave.compare.figures.drawing.sketch import EDGE, INK, SETS, Sketch
 from jointwave.compare.figures.style import in_unit
 
 THIN, THICK = 0.07, 0.12  # limits of the pillar's thickness over the width of the drawing
-ROOM = 0.11  # beside the pillar, of the width of the drawing
-UNIT = 0.06  # length of arrows at a pillar, of the width of the drawing
-OVER = 0.16  # margin for arrows, of the domain's size
-FEW = 4  # receivers that are listed with their coordinates
-SLENDER = 0.6  # of the length of a slender rock mass, that sizes its arrows instead of its width
+ROOM = 0.11  # margin beside the pillar, over the width of the drawing
+UNIT = 0.06  # length of arrows at a pillar, over the width of the drawing
+OVER = 0.16  # margin for arrows, over the domain's size
+FEW = 4  # most receivers listed with their coordinates
+SLENDER = 0.6  # least size that scales arrows, over the length of a rock mass
 LAYER = "#8a3b12"
 DENSE = 3000  # contacts above which the lines of a rock mass are thin
 
@@ -39,15 +39,15 @@ def sketch_of(scene: AnyScene) -> Sketch:
 
 
 def seen(scene: AnyScene) -> tuple[Blocks, slice]:
-    """Return the blocks of a scene in the plane, and how to turn their places: to the right and
-    up."""
+    """Return the blocks of a scene in the plane, and the slice that orders their coordinates
+    (right, up)."""
     if scene.is_column:
         return blocks_of_pillar(scene, 2), slice(None, None, -1)
     return blocks_of_scene(scene), slice(None)
 
 
 def _bodies(blocks: Blocks, turn: slice, rocks: dict[int, str], joints: Joints) -> list[Artist]:
-    """Return the blocks by the region that they are of, with its name, and the joints."""
+    """Return the shapes of the blocks, grouped by region and named after it, and of the joints."""
     of, outlines = blocks.body.region, blocks.outlines
     shapes = [
         sketch.rock(name, [outlines.of(i)[:, turn] for i in np.flatnonzero(of == region)], k)
@@ -59,7 +59,7 @@ def _bodies(blocks: Blocks, turn: slice, rocks: dict[int, str], joints: Joints) 
 
 
 def _of_pillar(scene: Scene) -> Sketch:
-    """Return the sketch of a pillar, its thickness stretched if it were too thin."""
+    """Return the sketch of a pillar; its thickness is stretched if too thin."""
     (blocks, turn), pillar, half = seen(scene), scene.pillar, scene.pillar.side / 2
     of = blocks.contacts.joint_set
     here, there = blocks.body.region[blocks.contacts.blocks].T
@@ -104,7 +104,8 @@ def _of_pillar(scene: Scene) -> Sketch:
 
 
 def _end_load(scene: Scene, half: float, unit: np.ndarray) -> list[Artist]:
-    """Return the arrow of the load at the start; in words what acts across the drawing or turns."""
+    """Return the arrow of the load at the start, and words for components out of the drawing and
+    couples."""
     load = scene.load
     if not load.amplitude:
         return []
@@ -138,8 +139,8 @@ def _of_rock_mass(scene: RockMass) -> Sketch:
     rocks = {-1: "_rock"} | {k: one.name for k, one in enumerate(scene.regions)}
     shapes = _bodies(blocks, turn, rocks, joints)
     held = [getattr(scene.boundaries, name, "free") for name in domain.sides]
-    for kept in dict.fromkeys(held):  # openings are free
-        shapes += sketch.side("side", edges.ends[np.array(held)[edges.side] == kept], kept)
+    for kind in dict.fromkeys(held):  # openings are free
+        shapes += sketch.side("side", edges.ends[np.array(held)[edges.side] == kind], kind)
     low, high = (at(blocks.outlines.corners, axis=0) for at in (np.min, np.max))
     size = float(max((high - low).min(), SLENDER * (high - low).max()))
     words = ""

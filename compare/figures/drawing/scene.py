@@ -1,4 +1,4 @@
-"""The figure of a scene: a drawing for each appearance, its load over time and a legend."""
+"""The figure of a scene: drawings of its variants, the load over time and a legend."""
 
 from textwrap import fill
 from typing import Any
@@ -24,11 +24,12 @@ TITLE = "The scene"
 CAPTION = (
     "Drawn from the scene file; blue marks: receivers, red: loads and waves, as over time beside."
 )
-PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.55, 3.6  # inches: pulse, lowest drawing, below, tallest
+#: Inches: width of the pulse, least height of a drawing, height below it, largest height.
+PULSE, LOW, FOOT, TALLEST = 1.3, 0.75, 0.55, 3.6
 FLAT = 0.3  # height over width of drawings, below which they are one below the other
-ENTRIES, LINE = 6, 0.25  # of the legend in a line, and inches of one
-SAMPLES, LETTERS = 400, 24  # of the pulse, and in a line above it
-#: What a drawing shows of a pillar or a rock mass beside its lines.
+ENTRIES, LINE = 6, 0.25  # entries in a line of the legend, height of a line in inches
+SAMPLES, LETTERS = 400, 24  # samples of the pulse, letters in a line of its title
+#: Keys that a drawing shows besides its lines.
 SEEN = (
     *("pillar", "segments", "scatter", "load", "ends", "domain", "regions"),
     *("waves", "loads", "boundaries", "gravity", "prestress"),
@@ -58,7 +59,7 @@ def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
 
 
 def _figure(scenes: dict[str, tuple[AnyScene, Sketch]]) -> Figure:
-    """Draw flat scenes one below the other, others in pairs, each with its pulse beside it."""
+    """Draw flat scenes one below the other, others in pairs, each next to its pulse."""
     sketches = [sketch for _, sketch in scenes.values()]
     pairs = 1 if len(scenes) == 1 or sketches[0].ratio < FLAT else 2
     rows = [sketches[k : k + pairs] for k in range(0, len(sketches), pairs)]
@@ -84,7 +85,7 @@ def _figure(scenes: dict[str, tuple[AnyScene, Sketch]]) -> Figure:
 
 
 def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
-    """Draw the first load or wave over time, to a little after its end."""
+    """Draw the first load or wave over time, until shortly after its end."""
     pulse = next((pulse for pulse in scene.pulses if pulse.amplitude), None)
     if pulse is None:
         ax.remove()
@@ -101,7 +102,7 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
 
 
 def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return times (s) and the load or wave there, SI, from its start to a little after its end.
+    """Return times, s, and the load or wave, SI, from its start to shortly after its end.
 
     duration : of the scene, s. An extreme load is scaled, see `cases.loads.load_history`.
     """

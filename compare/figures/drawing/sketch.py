@@ -1,5 +1,5 @@
-"""A scene as shapes of matplotlib in metres: what pillars and rock masses share, and what surrounds
-the blocks of a rock mass: receivers, waves, loads, gravity and prestress."""
+"""A scene as matplotlib shapes in metres: shapes common to pillars and rock masses, and receivers,
+waves, loads, gravity and prestress of a rock mass."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -20,7 +20,7 @@ from jointwave.results.stress import stress_components
 
 INK, LOAD, RECEIVER = "#1c2126", "#b3001b", "#00549e"
 EDGE, SOFT = "#9a917f", "#5d6670"
-#: Colours of the rock, and of that of regions or segments, in order.
+#: Colours of the rock, then of regions or segments in order.
 ROCKS = ("#efe9dd", "#cfc8b8", "#b9c4cc", "#d9cfe0", "#c4d2bd")
 #: Line styles of sides and ends by boundary condition: width (points) and dashes.
 SIDES: dict[str, tuple[float, Any]] = {
@@ -31,20 +31,20 @@ SIDES: dict[str, tuple[float, Any]] = {
     "roller": (3.4, (0, (0.6, 0.6))),
     "periodic": (1.4, (0, (1.0, 1.5))),
 }
-#: Colours of joint sets, in order; safe for all kinds of colour blindness (Tol 2021, bright).
+#: Colours of joint sets, in order, distinguishable with any colour blindness (Tol 2021, bright).
 SETS = ("#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee")
-LENGTH, SHORT = 0.12, 0.05  # of the domain's size: arrows of waves, and other arrows
+LENGTH, SHORT = 0.12, 0.05  # length of arrows of waves and others, over the domain's size
 MOST = 12  # arrows of a pressure on one edge
-MANY = 3000  # lines or blocks of one name above which they are an image in the drawing
+MANY = 3000  # lines or blocks of one name above which they are rasterised
 
 
 class Sketch(NamedTuple):
-    """What a drawing shows of a scene, places in m to the right and up.
+    """The drawing of a scene; coordinates (right, up), m.
 
-    shapes : by the functions below, in drawing order; a name that begins with "_" is not in the
-    legend. low, high : the shown rectangle [2]. axes : their names. stretch : of what is up.
-    size : in words. ticks : the axes that have any, of "xy". image : of the rectangle [h, w, 4],
-    below all shapes, or None.
+    shapes : from the functions below, in drawing order; names that begin with "_" are not in the
+    legend. low, high : corners of the shown rectangle [2]. axes : their names. stretch : factor of
+    the upward coordinate. size : in words. ticks : axes with ticks, of "xy". image : of the
+    rectangle [h, w, 4], below all shapes, or None.
     """
 
     shapes: list[Artist]
@@ -78,7 +78,7 @@ class Sketch(NamedTuple):
         ax.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
 
     def table(self) -> pd.DataFrame:
-        """Return the ends of every line, and the place of every receiver, with its name."""
+        """Return the ends of every line, and the position of every receiver, with its name."""
         columns = [f"{way} {axis} (m)" for way in ("from", "to") for axis in self.axes]
         parts = []
         for shape in self.shapes:
@@ -94,7 +94,7 @@ class Sketch(NamedTuple):
 
 
 def rock(name: str, polygons: list[np.ndarray], k: int) -> Artist:
-    """Return blocks of the k-th rock, polygons [corners, 2], m."""
+    """Return the blocks of the k-th rock from polygons [corners, 2], m."""
     style: Any = {"facecolors": ROCKS[k % len(ROCKS)], "zorder": 1}
     return PolyCollection(polygons, label=name, rasterized=len(polygons) > MANY, **style)
 
@@ -106,26 +106,26 @@ def lines(name: str, segments: Any, colour: str, width: float, dashes: Any = "-"
     return [found] if len(segments) else []
 
 
-def side(name: str, segments: Any, held: str) -> list[Artist]:
+def side(name: str, segments: Any, kind: str) -> list[Artist]:
     """Return the lines of a side or end with a boundary condition."""
-    return lines(f"{held} {name}", segments, INK, *SIDES[held])
+    return lines(f"{kind} {name}", segments, INK, *SIDES[kind])
 
 
 def receivers(name: str, places: Any, marker: str) -> list[Artist]:
-    """Return the marks of receivers at places [n, 2], m; none if there are none."""
+    """Return the markers of receivers at positions [n, 2], m; none if there are none."""
     style: Any = {"color": RECEIVER, "markersize": 4.5, "linestyle": "none", "zorder": 8}
     return [Line2D(*np.transpose(places), marker=marker, label=name, **style)] if places else []
 
 
 def arrow(tail: np.ndarray, tip: np.ndarray, colour: str = LOAD, heads: str = "-|>") -> Artist:
-    """Return an arrow between two places, m."""
+    """Return an arrow between two points, m."""
     style = {"arrowstyle": heads, "color": colour, "linewidth": 1.3, "shrinkA": 0, "shrinkB": 0}
     end, start = (tip[0], tip[1]), (tail[0], tail[1])
     return Annotation("", end, start, arrowprops=style, transform=IdentityTransform(), zorder=6)
 
 
 def pushing(tip: np.ndarray, direction: np.ndarray, length: Any, colour: str = LOAD) -> Artist:
-    """Return an arrow of a length (m) along a direction that ends at a place."""
+    """Return an arrow of a length, m, along a direction, that ends at a point."""
     return arrow(tip - length * direction, tip, colour)
 
 
@@ -136,13 +136,13 @@ def shaking(middle: np.ndarray, direction: np.ndarray, length: Any) -> Artist:
 
 
 def gravity(tip: np.ndarray, down: np.ndarray, length: Any, acceleration: float) -> list[Artist]:
-    """Return the arrow of gravity (m/s²), which ends at a place, with its value to the left."""
+    """Return the arrow of gravity, which ends at a point, and its value (m/s²) to the left."""
     words = note(tip - 1.3 * length * np.array([1.0, 0.0]), f"{acceleration:g} m/s²", "right")
     return [pushing(tip, down, length, SOFT), words] if acceleration else []
 
 
 def note(at: np.ndarray, text: str, align: str) -> Artist:
-    """Return text at a place, m, with its horizontal alignment."""
+    """Return text at a point, m, with horizontal alignment."""
     plain = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8}
     return Text(at[0], at[1], text, ha=align, va="center", fontsize=8, zorder=7, bbox=plain)
 
@@ -150,10 +150,10 @@ def note(at: np.ndarray, text: str, align: str) -> Artist:
 def surroundings(
     scene: RockMass, domain: Shape, onto: np.ndarray, size: float, wide: float = 1.0
 ) -> list[Artist]:
-    """Return the shapes of all that is not rock.
+    """Return the shapes of receivers, waves, loads, gravity and prestress.
 
-    onto : [2, d], from places to the drawing. size : m, that arrows are a part of. wide : by how
-    much blocks are farther apart in the drawing.
+    onto : projection [2, d] onto the drawing. size : length that scales arrows, m. wide : factor by
+    which blocks are moved apart in the drawing.
     """
     middle, record = (domain.low + domain.high) / 2, scene.record
 
@@ -168,7 +168,7 @@ def surroundings(
     for wave in scene.waves:
         n, along = np.array(wave.direction), onto @ wave.direction
         left = np.array([-along[1], along[0]])
-        with np.errstate(divide="ignore"):  # to where a line through the middle enters
+        with np.errstate(divide="ignore"):  # the point where a ray to the middle enters
             tip = middle - (float(np.min(half / np.abs(n))) + 0.01 * size) * n
         at = onto @ (tip - LENGTH / 2 * size * n)
         if wave.kind == "S":
@@ -203,8 +203,8 @@ def surroundings(
 def _pressure(
     load: PlaneLoad, domain: Shape, size: float
 ) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
-    """Yield tip, direction and length of the arrows of a pressure, in the plane as many as an edge
-    has room for, in space one a face."""
+    """Yield tip, direction and length of the arrows of a pressure: in the plane as many as fit
+    along an edge, in space one per face."""
     for corners, normal in domain.faces_of(load.side, load.opening):
         inwards = -normal if load.opening is None else normal
         if len(normal) == 3:

@@ -1,4 +1,4 @@
-"""The drawing of a rock mass in space: its blocks from in front, by PyVista where installed."""
+"""The drawing of a rock mass in space, rendered by PyVista if installed."""
 
 from importlib.util import find_spec
 from typing import Any
@@ -23,17 +23,17 @@ from jointwave.compare.figures.drawing.sketch import (
     surroundings,
 )
 
-TURN, RISE = np.radians([28.0, 24.0])  # of the viewer from the front to the right, and up
+TURN, RISE = np.radians([28.0, 24.0])  # azimuth of the viewer from the front, and elevation
 RIGHT = np.array([np.cos(TURN), np.sin(TURN), 0.0])
 TOWARDS = np.array([np.sin(TURN), -np.cos(TURN), np.tan(RISE)]) * np.cos(RISE)  # the viewer
 UP = np.cross(TOWARDS, RIGHT)
-ONTO = np.stack([RIGHT, UP])  # places in the drawing are ONTO @ x
-LIGHT = np.array([0.25, -0.70, 0.67])  # towards its source
-DARKEST = 0.6  # of a face that is turned away from the light
+ONTO = np.stack([RIGHT, UP])  # coordinates in the drawing are ONTO @ x
+LIGHT = np.array([0.25, -0.70, 0.67])  # direction to the light source
+DARKEST = 0.6  # brightness of a face turned away from the light
 EDGE, WIDTH = "#2b2820", 0.4  # edges of blocks, and their width (points)
 WALLS = "#7d8794"  # faces of openings
-MARGIN = 0.14  # beside the rock, of its size in the drawing
-PIXELS = 1400  # of an image, in its width
+MARGIN = 0.14  # beside the rock, over its size in the drawing
+PIXELS = 1400  # width of an image
 
 
 def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
@@ -53,7 +53,7 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     low, high = low - margin, high + margin
     by_pyvista = find_spec("pyvista") is not None
     named = {one.name: SETS[k % len(SETS)] for k, one in enumerate(scene.joint_sets)}
-    named = named if walls or explode else {}  # else no joint is bare
+    named = named if walls or explode else {}  # else no joint face is visible
     named |= {one.name: ROCKS[(k + 1) % len(ROCKS)] for k, one in enumerate(scene.regions)}
     named |= {"opening": WALLS} if walls else {}
     size = float((domain.high - domain.low).max())
@@ -81,10 +81,10 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
 def _faces(
     scene: RockMass, blocks: Blocks, kept: np.ndarray, shift: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return the faces [corners, 3] (m) of the blocks that are kept, where they are bare and turned
-    to the viewer, and their colours [n, 3]: of a joint set, of an opening, or of the rock.
+    """Return the visible faces [corners, 3], m, of the kept blocks, and their colours [n, 3], of a
+    joint set, an opening or the rock.
 
-    shift : of the blocks, [n, 3], m.
+    kept : of each block [blocks]. shift : of the blocks [blocks, 3], m.
     """
     faces, colours = list[np.ndarray](), list[np.ndarray]()
     rocks = np.array([to_rgb(one) for one in ROCKS])[(blocks.body.region + 1) % len(ROCKS)]
@@ -106,7 +106,7 @@ def _faces(
 def _rendered(
     faces: list[np.ndarray], colours: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Return an image [h, w, 4] of faces; low, high : what it shows of the drawing [2], m."""
+    """Return an image [h, w, 4] of faces; low, high : its corners in the drawing [2], m."""
     import pyvista
 
     corners, last = np.concatenate(faces), np.cumsum([len(face) for face in faces])
@@ -114,7 +114,7 @@ def _rendered(
     mesh = pyvista.PolyData.from_irregular_faces(corners, parts)
     (middle_x, middle_y), (width, height) = (low + high) / 2, high - low
     focus = middle_x * RIGHT + middle_y * UP
-    with pyvista.vtk_verbosity("off"):  # of displays that there are not
+    with pyvista.vtk_verbosity("off"):  # no warnings about a missing display
         plotter = pyvista.Plotter(
             off_screen=True, window_size=[PIXELS, round(PIXELS * height / width)]
         )

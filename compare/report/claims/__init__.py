@@ -1,4 +1,4 @@
-"""Claims of Guo & Li (2002), by the figures of their paper: how one is measured and written."""
+"""Claims of Guo & Li (2002) by figure of their paper, and their registration and wording."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -20,13 +20,13 @@ class Claim(NamedTuple):
 
 
 Measure = Callable[[list[Comparison]], Claim]
-#: By figure, in the order of the page: what measures its claims on the scene and its variants.
+#: Functions that measure the claims of each figure on its scene's variants, in page order.
 CLAIMS: dict[int, list[Measure]] = {}
 
 
 def claim(text: str, *figures: int) -> Callable[[Callable[..., tuple[str, bool]]], Measure]:
-    """Return a decorator that makes a function, which returns a sentence and whether the claim
-    holds, the measure of a claim of some figures."""
+    """Return a decorator that registers a function for a claim of some figures; the function
+    returns a sentence and whether the claim holds."""
 
     def register(find: Callable[..., tuple[str, bool]]) -> Measure:
         @wraps(find)
@@ -42,12 +42,12 @@ def claim(text: str, *figures: int) -> Callable[[Callable[..., tuple[str, bool]]
 
 
 def listed(numbers: pd.Series | pd.DataFrame, form: str, unit: str = "") -> str:
-    """Return the number or the row of numbers of each engine, in the order of the legend."""
+    """Return the number or the numbers of each engine as text, in the given order."""
     rows = pd.DataFrame(numbers).rename(index=label_of).iterrows()
     return "; ".join(f"{name} {', '.join(f'{x:{form}}' for x in row)}{unit}" for name, row in rows)
 
 
 def falls(values: pd.DataFrame | np.ndarray) -> bool:
-    """Return whether each value along the last axis is below the one before, and there are some."""
+    """Return whether values decrease strictly along the last axis; False for fewer than two."""
     steps = np.diff(values)
     return bool(steps.size and (steps < 0).all())

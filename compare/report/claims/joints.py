@@ -14,9 +14,8 @@ from jointwave.compare.report.claims import claim, listed, waves
 def _at_the_layer(
     comparisons: list[Comparison], behind: bool
 ) -> tuple[Scene, str, pd.DataFrame, pd.DataFrame]:
-    """Return the scene with the layer, the receiver next to it in words, and the waveforms there
-    with and without it, before what the layer and the loaded end send to and fro comes by once
-    more."""
+    """Return the scene with the layer, words for the receiver next to it, and the waveforms there
+    with and without the layer, cut before the first reverberation between layer and loaded end."""
     plain, layered = sorted(comparisons, key=lambda one: bool(one.scene.soft_layers))
     scene, layer = layered.scene, layered.scene.soft_layers[0].y
     quantity = "stress" if scene.record.stress else "velocity"
@@ -39,8 +38,8 @@ def harmonic_coefficients(scene: Scene) -> tuple[float, float]:
 
 @claim("reflection in front of the layer", 7, 8)
 def reflects_in_front(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The layer reflects, within a quarter of the share of the load's harmonic: a one-cycle pulse
-    holds all frequencies, and its peak is not that of one harmonic."""
+    """The reflected peak is within a quarter of |R| of a harmonic of the load's period; a one-cycle
+    pulse contains all frequencies, so the two differ."""
     scene, where, one, other = _at_the_layer(comparisons, behind=False)
     found, theory = waves.peak(one - other) / waves.peak(other), harmonic_coefficients(scene)[1]
     return (
@@ -52,7 +51,7 @@ def reflects_in_front(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("smaller and later behind the layer", 7, 8)
 def smaller_and_later(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """Behind the layer the pulse is lower, by 5 % at least, and later."""
+    """Behind the layer the pulse is at least 5 % lower, and later."""
     scene, where, one, other = _at_the_layer(comparisons, behind=True)
     ratios, late = waves.peak(one) / waves.peak(other), 1e3 * waves.delays(one, other)
     return (
@@ -63,13 +62,13 @@ def smaller_and_later(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 
 def _by_tension(comparisons: list[Comparison]) -> list[Comparison]:
-    """Return the variants whose joints carry tension and do not."""
+    """Return the variants with joints that carry tension, then without."""
     return sorted(comparisons, key=lambda one: one.scene.joints.tension is False)
 
 
 @claim("the tensile half-cycle is cut", 9)
 def tension_is_cut(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The tensile half-cycle is there with tension and gone without."""
+    """There is a tensile half-cycle if joints carry tension, and none otherwise."""
     stresses = (waves.waveforms(one, "stress") for one in _by_tension(comparisons))
     carried, without = (abs(one.min().clip(upper=0.0)) / 1e6 for one in stresses)
     load = abs(comparisons[0].scene.load.amplitude) / 1e6
@@ -82,7 +81,7 @@ def tension_is_cut(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("blocks separate", 10)
 def blocks_separate(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """No block pulls another back, and the joint between two receivers opens."""
+    """Without tension no block pulls another back, and the joint between two receivers opens."""
     variants = _by_tension(comparisons)
     velocities = (waves.waveforms(one, "velocity") for one in variants)
     carried, without = (one.min() / one.max() for one in velocities)
@@ -97,8 +96,8 @@ def blocks_separate(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("blocks coast, the velocity tends to zero behind the pulse", 10)
 def blocks_coast(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """Between the pulse and what comes back from the end the velocity stays constant, since no
-    force acts, and near zero."""
+    """Between the pulse and its reflection from the end the velocity is constant, as no force acts,
+    and near zero."""
     without = _by_tension(comparisons)[1]
     scene, moving = without.scene, waves.waveforms(without, "velocity")
     incident, reflected, _ = waves.arrivals(scene, scene.record.velocity[0])

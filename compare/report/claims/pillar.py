@@ -1,4 +1,4 @@
-"""Figures 2, 3 and 6: one pulse in a pillar, its passages, its decay and its width."""
+"""Figures 2, 3 and 6: a pulse in a pillar, its passages, decay and width."""
 
 from collections.abc import Callable
 
@@ -31,7 +31,7 @@ def one_sine_cycle(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("incident, first and second reflected pulse", 3)
 def three_pulses(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """They pass in turn, the first reflected one reversed, each above a tenth of the peak."""
+    """The pulses pass in turn, the first reflected one reversed, each above a tenth of the peak."""
     scene, y = comparisons[0].scene, comparisons[0].scene.record.stress[0]
     found = waves.signed_peaks(comparisons[0])
     least = 0.1 * waves.peak(waves.waveforms(comparisons[0], "stress"))
@@ -45,7 +45,7 @@ def three_pulses(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("amplitude falls with distance", 3)
 def falls_with_distance(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """Each later passage of a damped pulse is lower."""
+    """A damped pulse is lower at each passage."""
     found = {
         name: waves.signed_peaks(one).abs() / 1e6
         for name, one in named(comparisons)
@@ -60,7 +60,7 @@ def falls_with_distance(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("amplitude falls with damping", 3)
 def falls_with_damping(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """At equal distance a pulse is lower the larger the damping ratio."""
+    """At the same distance a larger damping ratio gives a lower pulse."""
     ordered = sorted(comparisons, key=lambda one: one.scene.joints.damping_ratio or 0.0)
     ratios = ", ".join(f"{one.scene.joints.damping_ratio or 0:g}" for one in ordered)
     peaks = [waves.signed_peaks(one).abs() / 1e6 for one in ordered]
@@ -73,7 +73,7 @@ def falls_with_damping(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("large damping: broader", 6)
 def broader(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The larger the damping ratio, the longer the pulse's mean period."""
+    """A larger damping ratio gives a longer mean period of the pulse."""
     found = _of_first_pass(
         comparisons,
         lambda wave: 1e3 * mean_period(wave.values, float(wave.index[1] - wave.index[0])),
@@ -84,7 +84,7 @@ def broader(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("large damping: second half-cycle weaker", 6)
 def second_half_weaker(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The larger the damping ratio, the lower the second half-cycle beside the first."""
+    """A larger damping ratio gives a lower second half-cycle relative to the first."""
     found = _of_first_pass(
         comparisons, lambda wave: -wave[wave.index >= wave.idxmax()].min() / wave.max()
     )
@@ -99,7 +99,7 @@ def second_half_weaker(comparisons: list[Comparison]) -> tuple[str, bool]:
 def _of_first_pass(
     comparisons: list[Comparison], measure: Callable[[pd.Series], float]
 ) -> pd.DataFrame:
-    """Return what is measured of the incident pulse [engine, variant]."""
+    """Return a measure of the incident pulse [engine, variant]."""
     scene = comparisons[0].scene
     stop = waves.arrivals(scene, scene.record.stress[0])[1] - waves.period(scene)
     found = [waves.span(waves.waveforms(one, "stress"), 0.0, stop) for one in comparisons]
@@ -108,8 +108,7 @@ def _of_first_pass(
 
 @claim("the joints' own dispersion explains most of the misfit")
 def mostly_dispersion(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The rigid blocks are less than half as far from the bar with joints as from the homogenised
-    one."""
+    """Rigid blocks are less than half as far from the jointed bar as from the homogenised bar."""
     results, scene = comparisons[0].results, comparisons[0].scene
     exact = (row_of_blocks.AXIAL, EQUIVALENT, JOINTED)
     own, bar, jointed = (results[one.name] for one in exact)

@@ -1,5 +1,5 @@
-"""Figure 4: how a pulse travels, comes back from the free end, and meets its own reflection; figure
-5: what a non-reflecting end leaves of the reflected pulse.
+"""Figure 4: travel of a pulse, its reflection at a free end, and their superposition. Figure 5: the
+remaining reflection at a non-reflecting end.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from jointwave.compare.solvers.dem import DEM
 
 @claim("travel", 4)
 def travels(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The incident pulse travels at the bar speed, within 3 % of it."""
+    """The incident pulse travels at the bar speed within 3 %."""
     base, scene = comparisons[0], comparisons[0].scene
     c, places, quarter = calibrate(scene).bar_speed, scene.record.stress, waves.period(scene) / 4
     apart = [i for i, y in enumerate(places) if scene.pillar.length - y > waves.overlap(scene)]
@@ -35,7 +35,7 @@ def travels(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("reflection", 4)
 def reflection(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The free end reverses the pulse, and no end sends back more than it got."""
+    """The free end reverses the pulse and does not amplify it."""
     scene = comparisons[0].scene
     places = np.array(scene.record.stress)
     receiver = int(np.argmin(np.abs(places - 0.6 * scene.pillar.length)))
@@ -52,8 +52,8 @@ def reflection(comparisons: list[Comparison]) -> tuple[str, bool]:
 def superposition(comparisons: list[Comparison]) -> tuple[str, bool]:
     """Near the free end the stress is the sum of the pulse and its reversed reflection.
 
-    The sum is built from the incident pulse at the section farthest from the end, shifted by the
-    bar's travel times; 15 % is what decay and dispersion on the way may change.
+    The sum is built from the incident pulse at the last section without overlap, shifted by the
+    bar's travel times; 15 % allow for decay and dispersion on the way.
     """
     base, scene = comparisons[0], comparisons[0].scene
     places, reach = np.array(scene.record.stress), waves.overlap(scene)
@@ -76,7 +76,7 @@ def superposition(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 
 def _moved(pulse: pd.DataFrame, times: pd.Index, late: float) -> pd.DataFrame:
-    """Return a pulse as it is at other times, late by so much, s; nothing before and after it."""
+    """Return a pulse delayed by `late`, s, at other times; zero before and after it."""
     at = times.to_numpy() - late
     return pulse.apply(
         lambda wave: pd.Series(np.interp(at, wave.index, wave.values, 0.0, 0.0), times)
@@ -84,14 +84,14 @@ def _moved(pulse: pd.DataFrame, times: pd.Index, late: float) -> pd.DataFrame:
 
 
 def _reflected(comparisons: list[Comparison]) -> dict[str, pd.Series]:
-    """Return the first reflected over the incident peak at the first section, by the end."""
+    """Return the first reflected over the incident peak at the first section, by kind of end."""
     peaks = {one.scene.ends.end: waves.signed_peaks(one) for one in comparisons}
     return {end: abs(one[1] / one[0]) for end, one in peaks.items()}
 
 
 @claim("no reflected pulse with the non-reflecting end", 5)
 def quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """The end (9) takes nearly all of the pulse, below a tenth of the incident peak."""
+    """The end of eq. (9) reflects less than a tenth of the incident peak."""
     found = _reflected(comparisons)
     return (
         f"Peak of the reflected over the incident pulse with a free end: "
@@ -102,10 +102,10 @@ def quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("the remaining reflection is due to the end block's mass", 5)
 def left_by_the_quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """What the rigid chain's quiet end leaves is what its end block's mass reflects.
+    """The reflection at the quiet end of rigid blocks is that of the end block's mass.
 
-    Theory is applied to the very pulse that comes back from the free end; 1 % of what is left is
-    for the tails outside the window.
+    Theory is applied to the pulse reflected by the free end; a tolerance of 1 % allows for tails
+    outside the window.
     """
     scenes = {one.scene.ends.end: one for one in comparisons}
     sent, left = (waves.passages(scenes[end])[1][DEM.name] for end in ("free", "quiet"))
@@ -121,7 +121,9 @@ def left_by_the_quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 
 def quiet_share(wave: pd.Series, scene: Scene) -> pd.Series:
-    """Return the reflection of the rigid chain's quiet end (9), given that of a free end.
+    """Return the wave reflected by the quiet end, eq. (9), of a chain of rigid blocks.
+
+    wave : reflected by a free end.
 
     With the wave exp(i omega t - i theta j) in blocks of mass m, z = exp(-i theta), k* = k (1 +
     i omega eta) and Z = rho c A: z + 1/z = 2 - m omega^2/k*; the dashpot on the full-mass end block
@@ -132,7 +134,7 @@ def quiet_share(wave: pd.Series, scene: Scene) -> pd.Series:
     omega = 2 * np.pi * np.fft.rfftfreq(size, wave.index[1] - wave.index[0])[1:]
     k = p.regular_stiffness * p.area * (1 + 1j * omega * (p.time_constant or 0.0))
     half = 1 - p.block_mass * omega**2 / (2 * k)
-    z = half - 1j * np.sqrt(1 - half**2)  # the root that travels or decays forwards
+    z = half - 1j * np.sqrt(1 - half**2)  # the root that travels or decays forward
     z = np.where(np.abs(z) > 1 + 1e-12, 1 / z, z)
     dashpot = 1j * omega * p.impedance * p.area
     ratio = -(k * (z - 1) + dashpot) / (k * (1 / z - 1) + dashpot) / z
@@ -149,7 +151,7 @@ def quiet_harmonic(scene: Scene) -> float:
 
 @claim("the matched end reflects least", 5)
 def matched_end(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """Behind a half-block spring the dashpot leaves below 1 % wherever there are joints."""
+    """A dashpot behind the spring of half a block reflects below 1 % in every engine."""
     found = _reflected(comparisons)
     matched, quiet = found["matched"], found["quiet"][DEM.name]
     return (

@@ -1,8 +1,8 @@
 """Waveforms of the engines at a receiver, and the passages of a pulse in them.
 
-Waveforms are a table: over time (s) a column an engine, stress in Pa, compression positive, or
-motion along y in SI. A number for each engine is a Series. Passages are those of the homogenised
-bar: the wave travels from the loaded end at the bar speed c and back from the other end.
+A table has a column per engine over time (s): stress in Pa, compression positive, or motion along y
+in SI. A number per engine is a Series. Arrival times are those of the homogenised bar: the wave
+travels at the bar speed c from the loaded end and is reflected at both ends.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from jointwave.compare.misfit.pairs import Comparison
 
 
 def waveforms(comparison: Comparison, quantity: str, receiver: int = 0) -> pd.DataFrame:
-    """Return the waveforms at a receiver of a quantity, by its number."""
+    """Return the waveforms of a quantity at its receiver of this number."""
     found = {
         name: comparison.results[name][quantity][receiver].to_series()
         for name in in_order(comparison.results)
@@ -29,19 +29,19 @@ def waveforms(comparison: Comparison, quantity: str, receiver: int = 0) -> pd.Da
 
 
 def peak(waves: pd.DataFrame) -> pd.Series:
-    """Return the largest magnitudes."""
+    """Return the largest magnitude of each engine."""
     return waves.abs().max()
 
 
 def by_engine(
     measure: Callable[[np.ndarray, np.ndarray], float], one: pd.DataFrame, other: pd.DataFrame
 ) -> pd.Series:
-    """Return what is measured between two waveforms of each engine."""
+    """Return a measure of two waveforms for each engine."""
     return pd.Series({name: measure(one[name].values, other[name].values) for name in one})
 
 
 def delays(one: pd.DataFrame, other: pd.DataFrame) -> pd.Series:
-    """Return by how much the first waveform of each engine is late, s."""
+    """Return the delay of each engine's first waveform relative to the second, s."""
     dt = float(one.index[1] - one.index[0])
     return by_engine(lambda a, b: delay(a, b, dt), one, other)
 
@@ -57,7 +57,7 @@ def period(scene: Scene) -> float:
 
 
 def overlap(scene: Scene) -> float:
-    """Return how near to an end a pulse meets its own reflection: c T / 2, m."""
+    """Return the distance from an end within which a pulse overlaps its reflection, c T / 2, m."""
     return calibrate(scene).bar_speed * period(scene) / 2
 
 
@@ -68,8 +68,7 @@ def arrivals(scene: Scene, y: float) -> np.ndarray:
 
 
 def passages(comparison: Comparison, receiver: int = 0) -> list[pd.DataFrame]:
-    """Return the stress of the three passages at a section, each between the middles of the quiet
-    spans before and after it."""
+    """Return the stress of the three passages at a section, cut in the quiet times between them."""
     scene, waves = comparison.scene, waveforms(comparison, "stress", receiver)
     due, whole = arrivals(scene, scene.record.stress[receiver]), period(scene)
     rests = np.diff(due, prepend=-np.inf) - whole

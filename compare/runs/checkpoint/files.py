@@ -1,8 +1,8 @@
-"""Checkpoints as files: hidden, beside the result, one for each process of a run.
+"""Checkpoints as hidden files next to the result, one for each process of a run.
 
 The file name contains the run, the sample and the process. A set of files is complete when every
-process of the run has one; an older set is removed only after that, so that a killed run always
-leaves a complete set. Each file is numpy's .npz, without pickles and with the checksums of zip.
+process of the run has one; only then is the older set removed, so that a killed run always leaves a
+complete set. Each file is numpy's .npz, without pickles and with the checksums of zip.
 """
 
 import hashlib
@@ -23,7 +23,7 @@ from jointwave.compare.runs.output import write
 from jointwave.compare.runs.processes import Processes
 from jointwave.results.arrays import arrays, fill
 
-COPIES = 2  # of a file: its arrays, and one of them as bytes
+COPIES = 2  # memory to read a file, over its size: its arrays, and one of them as bytes
 ABOUT = "about"  # the first array, the signature as JSON
 ANEW = "remove it, or run without --resume"
 
@@ -40,7 +40,7 @@ class Checkpoints:
         self.run = hashlib.sha256(text.encode()).hexdigest()[:12]
 
     def newest(self) -> int:
-        """Return the sample of the newest checkpoint, 0 without one.
+        """Return the sample of the newest complete checkpoint, 0 if there is none.
 
         Raises SceneError if it is damaged, or if all checkpoints belong to another run.
         """
@@ -65,7 +65,7 @@ class Checkpoints:
     def save(self, samples: int, parts: Any) -> None:
         """Write a checkpoint, then remove all older ones.
 
-        Raises OSError, on all processes, if any of them cannot write; the older ones are then kept.
+        Raises OSError on all processes if any cannot write; older checkpoints are then kept.
         """
         path, content = self._path(samples), io.BytesIO()
         held = {f"{i:05d}": a for i, a in enumerate(arrays(parts))}
@@ -89,7 +89,7 @@ class Checkpoints:
         return self.result.with_name(f".{stem}.checkpoint-{self.run}-{samples}-{rank}.npz")
 
     def _found(self) -> Iterator[tuple[Path, str, int]]:
-        """Yield the checkpoints of this result, their runs and samples."""
+        """Yield the checkpoint files of this result with their run and sample."""
         stem = re.escape(self.result.stem)
         pattern = re.compile(rf"\.{stem}\.checkpoint-([0-9a-f]+)-(\d+)-\d+\.npz")
         for path in self.result.parent.glob(".*.npz"):
@@ -106,7 +106,7 @@ class Checkpoints:
         return max(complete, default=0)
 
     def _refuse(self, other: Path) -> None:
-        """Raise SceneError with the differences from another run."""
+        """Raise SceneError with the differences between this run and that of another file."""
         try:
             signature: Signature = dict(json.loads(str(_read(other)[ABOUT])))
         except (ValueError, TypeError):

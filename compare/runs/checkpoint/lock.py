@@ -12,18 +12,18 @@ from jointwave.cases.errors import SceneError
 
 @contextmanager
 def locked(folder: Path, *inner: Path) -> Iterator[None]:
-    """Lock a folder for one command that writes results there and in `inner`, and sweep them.
+    """Lock a folder for a command that writes there and in `inner`; remove unfinished files.
 
-    A folder created for this and left empty is removed at the end.
+    Folders created for this are removed at the end if empty.
 
-    Raises SceneError if another command has locked it, OSError if nothing can be written.
+    Raises SceneError if another command has locked it, OSError if it is not writable.
     """
     from jointwave.compare.runs.output import sweep
 
     made = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
         with exclusive(folder):
-            TemporaryFile(dir=folder).close()  # writable, which the lock does not check
+            TemporaryFile(dir=folder).close()  # the lock does not check that it is writable
             for each in {folder, *inner}:
                 sweep(each)
             yield
@@ -37,8 +37,8 @@ def locked(folder: Path, *inner: Path) -> Iterator[None]:
 def exclusive(folder: Path, wait: bool = False) -> Iterator[None]:
     """Lock a folder, created if missing; wait : until no other process has locked it.
 
-    The lock is on the folder itself: there is no lock file that a link could redirect, and the
-    system releases it when a process is killed. Libraries for locks all write a file.
+    The lock is on the folder itself: there is no lock file that a link could redirect (locking
+    libraries all write one), and the system releases it when a process is killed.
     Raises SceneError if another process has locked it and `wait` is false.
     """
     folder.mkdir(parents=True, exist_ok=True)

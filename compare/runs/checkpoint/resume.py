@@ -1,4 +1,4 @@
-"""Checkpoints of a run at intervals of wall time, its interruption, its start and continuation."""
+"""Checkpoints of a run at intervals of wall time, its interruption and continuation."""
 
 import sys
 from dataclasses import dataclass, field
@@ -23,9 +23,9 @@ from jointwave.compare.runs.reuse import read_result, unlike
 class CheckpointSettings:
     """Checkpoint settings of a command's runs.
 
-    every : interval between checkpoints in wall time, s; 0: none. resume : continue the runs of an
-        earlier command. signals : that end a run. fresh : compute anew what could be read.
-    told : why files were not read, as far as logged.
+    every : wall time between checkpoints, s; 0: none. resume : continue the runs of an earlier
+        command. signals : those that end a run. fresh : compute everything anew.
+    told : the logged reasons why files were not read.
     """
 
     every: float
@@ -39,7 +39,7 @@ class RunCheckpointer:
     """Saves and restores one run, see `numerics.time_loop.Checkpointer`.
 
     done : number of samples in its newest checkpoint, 0 for a new run.
-    processes : that share the run; they decide together, as their clocks and signals differ.
+    processes : share the run; they decide together, because their clocks and signals differ.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class RunCheckpointer:
         settings: CheckpointSettings,
         processes: Processes,
     ) -> None:
-        """Look for a result, or a checkpoint, to continue from; called on all `processes`.
+        """Find a checkpoint to continue from, unless the result exists; called on all `processes`.
 
         Raises SceneError if the checkpoint is damaged or belongs to another run.
         """
@@ -65,14 +65,14 @@ class RunCheckpointer:
         self._total = len(sample_times(scene))
 
     def restore(self, parts: Any) -> None:
-        """Restore `parts` from the newest checkpoint, and report it."""
+        """Restore `parts` from the newest checkpoint and report the time reached."""
         self.files.load(self.done, parts)
         self._say(f"{self.files.result} continues at t = {self._time(self.done):.4g} s")
 
     def look(self, samples: int, parts: Any) -> None:
-        """Save the parts of a run when due; raises InterruptedRun if a signal is pending.
+        """Save `parts` when due; raises InterruptedRun if a signal is pending on any process.
 
-        After the last sample signals end the program at once again, that of the first process.
+        After the last sample a signal to the first process ends the program at once again.
         """
         signals, every = self.settings.signals, self.settings.every
         signals.patient = samples < self._total or not self.processes.is_first
@@ -89,7 +89,7 @@ class RunCheckpointer:
             raise error
 
     def finished(self) -> xr.Dataset | None:
-        """Return the result of an earlier command, None where the run is to be computed."""
+        """Return the result of an earlier command, None if it must be computed."""
         if self.settings.fresh:
             return None
         return read_result(self.files.result, self.scene, self.signature, self.settings.told)

@@ -4,7 +4,7 @@ import signal
 from functools import cache
 from types import FrameType
 
-#: In words, the effect of a signal on this program.
+#: The effect of a signal on the program, in words.
 WORDS: dict[int, str] = {
     signal.SIGINT: "interrupted",
     signal.SIGTERM: "terminated",
@@ -13,20 +13,20 @@ WORDS: dict[int, str] = {
 
 
 class Ended(BaseException):
-    """Request to end this program. Not an Exception nor KeyboardInterrupt, which libraries catch.
+    """Request to end the program; not an Exception or KeyboardInterrupt, which libraries catch.
 
     number : of the signal. code : of the program's exit.
     """
 
     def __init__(self, number: int) -> None:
         super().__init__(WORDS[number])
-        self.code = 128 + number  # as shells have it
+        self.code = 128 + number  # as in shells
 
 
 class Signals:
-    """Signal handling: raise Ended or, while `patient`, keep the signal pending until queried.
+    """Signal handler: raises Ended or, while `patient`, keeps the signal pending until `act`.
 
-    A second signal takes effect immediately; signals after Ended end the program by default action.
+    A second signal takes effect immediately; after Ended signals have their default action.
 
     asked : number of the pending signal, 0 for none.
     """
@@ -55,7 +55,7 @@ class Signals:
 
 @cache
 def watched() -> Signals:
-    """Return the signals of this program, with handlers installed."""
+    """Return the signals of the program, with handlers installed."""
     signals = Signals()
     signals.install()
     return signals

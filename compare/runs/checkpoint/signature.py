@@ -1,4 +1,4 @@
-"""Signature of a result: the scene, the program that computes it, its number of processes."""
+"""Signature of a result: hashes of scene and program, library versions, number of processes."""
 
 import hashlib
 import json
@@ -15,9 +15,9 @@ from jointwave.results.dataset import scene_hash
 
 Signature = dict[str, str]
 PROCESSES = "number of processes"
-#: Keys of [numerics.dem] that decide nothing but its own steps, or no number at all.
+#: Keys of [numerics.dem] that affect only the steps of rigid blocks, or no result at all.
 DEM_STEPS = {"step_fraction", "scheme", "allow_unstable", "static_tolerance", "threads"}
-#: Numerics that do not decide a result, by engine; of an exact solution neither engine's.
+#: Keys of [numerics] that do not affect the results of each engine.
 INDIFFERENT = {
     "dem": {"dem": {"threads"}, "continuum": True},
     "continuum": {"dem": DEM_STEPS},
@@ -26,7 +26,7 @@ INDIFFERENT = {
 
 
 def signature(scene: AnyScene, name: str, processes: int) -> Signature:
-    """Return everything that must match for a run to be continued or its result to be reused.
+    """Return what must match for a run to be continued or its result to be reused.
 
     name : of the solver.
     """
@@ -47,7 +47,7 @@ def differences(one: Signature, other: Signature) -> list[str]:
 
 @cache
 def program() -> str:
-    """Return a hash of all sources that compute."""
+    """Return a hash of the source files that affect results."""
     digest, root = hashlib.sha256(), Path(cases.__file__).parent.parent
     for package in ("cases", "results", "numerics", "joints", "dem", "continuum", "compare"):
         for source in sorted((root / package).rglob("*.py")):
@@ -56,8 +56,8 @@ def program() -> str:
 
 
 def _scene(scene: AnyScene, name: str) -> str:
-    """Return a hash of what decides a solver's result of a scene, with the warnings that it bears;
-    the numerics of another engine do not, nor the bounds of [expect]."""
+    """Return a hash of the keys that affect a solver's result, with the scene's warnings; the
+    numerics of another engine and [expect] do not affect it."""
     left_out: dict[str, Any] = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
     text = scene.model_dump_json(exclude=left_out)
     return scene_hash(scene, text + json.dumps(warnings(scene)))
