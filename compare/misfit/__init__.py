@@ -1,1 +1,1 @@
-"""The distance between waveforms: metrics, pairs of solutions, external data."""
+"""Distances between waveforms: metrics, pairs of solutions, external data."""

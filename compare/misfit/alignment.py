@@ -1,11 +1,11 @@
-"""Alignment of external curves with solutions, on common times.
+"""Alignment of external curves with solutions on common times.
 
-Overlap: only the common time span is compared. Times: those of the waveform with fewer samples in
-the overlap, the curve's own if both have the same number; the other is interpolated linearly, with
-an error of at most h^2 / 8 max |s''| for its sampling interval h. No filter is applied: straight
-lines neither ring nor spread at the kinks of a load, unlike band-limited interpolation. Clock:
-shifted only on request, by the same amount for all curves of a file, by cross-correlation with the
-solution that then fits best. Amplitudes: never scaled.
+Only the common time span is compared, at the times of the waveform with fewer samples in it (the
+curve's own, if equal); the other is interpolated linearly, with an error of at most h^2 / 8 max
+|s''| for its sampling interval h. No filter is applied: straight lines neither ring nor spread at
+the kinks of a load, unlike band-limited interpolation. Clocks are shifted only on request, by the
+same amount for all curves of a file, by cross-correlation with the solution that then fits best.
+Amplitudes are never scaled.
 """
 
 from collections.abc import Iterator
@@ -24,18 +24,18 @@ from jointwave.compare.misfit.external import LEAST_SAMPLES, Curves
 from jointwave.compare.misfit.metrics import Distance, distance, relative_l2, static_state
 from jointwave.compare.misfit.places import Place
 
-MOST_SAMPLES = 4_000_000  # of a curve at a scene's interval, when its clock is shifted
-INSTANT = 1e-12  # s, resolution of times, in the tables too
-UNEVEN = 0.01  # of the sampling interval: rounding error of printed times
+MOST_SAMPLES = 4_000_000  # of a curve whose clock is shifted, at the scene's interval
+INSTANT = 1e-12  # s, resolution of times, also in tables
+UNEVEN = 0.01  # rounding error of printed times, over the sampling interval
 
 Results = dict[str, xr.Dataset]
 
 
 class Shift(NamedTuple):
-    """The shift added to a curve's times, s; the solution that it then fits, and how well.
+    """The shift added to a curve's times, s, the solution that it then fits, and how well.
 
-    onto : empty if nothing could be correlated: no shift. correlation : normalised,
-    over the overlap, 1 for the same shape.
+    onto : "" without correlation: no shift. correlation : normalised over the overlap, 1 for equal
+    shapes.
     """
 
     seconds: float = 0.0
@@ -47,9 +47,9 @@ class Shift(NamedTuple):
 class AlignedCurve:
     """A file's curves compared with the solutions of one scene.
 
-    curves : at their own samples, on the shifted clock. shift : None if not requested.
-    time : [n] s, common times of the comparison. own_times : whether these are the curves' own.
-    outside : the part of the curves' duration that lies outside the overlap.
+    curves : at their own samples, on the shifted clock. shift : None unless requested. time : [n]
+    s, common times of the comparison. own_times : whether these are the curves' own. outside : part
+    of the curves' duration outside the overlap.
     """
 
     curves: Curves
@@ -59,7 +59,7 @@ class AlignedCurve:
     outside: float
 
     def series(self, place: Place) -> pd.Series:
-        """Return the curve at a place in SI over time in s, its own samples in the overlap."""
+        """Return the curve at a place in SI over time in s, at its own samples in the overlap."""
         own, values = self.curves.time, self.curves.waveforms[place]
         inside = (own >= self.time[0] - INSTANT) & (own <= self.time[-1] + INSTANT)
         found = pd.Series(values[inside], np.round(own[inside], 12))
@@ -67,12 +67,12 @@ class AlignedCurve:
 
 
 def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) -> AlignedCurve:
-    """Return a file's curves with all results of a scene; `align` shifts their clock.
+    """Return a file's curves aligned with all results of a scene; `align` shifts their clock.
 
     Raises SceneError if curve and scene share fewer than three samples.
     """
     shift = None
-    if align:  # onto the solution that fits best then
+    if align:  # onto the solution that then fits best
         if (curves.time[-1] - curves.time[0]) / scene.interval > MOST_SAMPLES:
             allowed = f"must last at most {MOST_SAMPLES:,} intervals of the scene to be aligned"
             raise SceneError(curves.file, "time", f"{curves.time[-1]:.6g} s", allowed)
@@ -108,10 +108,10 @@ def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
 def distance_at(
     time: np.ndarray, one: np.ndarray, other: np.ndarray, spectral: bool = False
 ) -> Distance:
-    """Return all distances of two waveforms [n] at times [n], which may be spaced unevenly.
+    """Return all distances of two waveforms [n] at times [n], which may be unevenly spaced.
 
-    Misfit and peaks then use the samples, weighted by the trapezoidal rule; all else uses both
-    waveforms interpolated linearly at the same number of equally spaced times.
+    Misfit and peaks then use the samples, weighted by the trapezoidal rule; all else uses linear
+    interpolation at the same number of equally spaced times.
     """
     even = np.linspace(time[0], time[-1], len(time))
     dt = even[1] - even[0]
@@ -132,8 +132,8 @@ def static_level(place: Place, result: xr.Dataset) -> float:
 
 
 def motions(curves: Curves, result: xr.Dataset) -> Iterator[tuple[Place, np.ndarray, np.ndarray]]:
-    """Yield the places of a curve in a solution, and the waveforms of both, without the solution's
-    static state before its load: a prestress is not part of the motion."""
+    """Yield the places of a curve in a solution, and both waveforms minus the solution's static
+    state, as a prestress is not part of the motion."""
     for place, values in curves.waveforms.items():
         ours = place.waveform(result)
         if ours is not None:
@@ -142,11 +142,11 @@ def motions(curves: Curves, result: xr.Dataset) -> Iterator[tuple[Place, np.ndar
 
 
 def _shift_onto(name: str, result: xr.Dataset, curves: Curves, scene: AnyScene) -> Shift:
-    """Return the shift onto one solution; none if either is zero throughout.
+    """Return the shift onto one solution; no shift if either is zero throughout.
 
-    All places have equal weight, each waveform divided by the solution's norm. The peak of the
-    cross-correlation is refined by the correlation at the samples themselves, which interpolation
-    between few, uneven samples displaces by a part of their interval.
+    All places have equal weight: each waveform is divided by the solution's norm. The peak of the
+    cross-correlation is refined by the correlation at the samples themselves, since interpolation
+    between few, uneven samples displaces it by a part of their interval.
     """
     from scipy.optimize import minimize_scalar  # slow to import
     from scipy.signal import correlate

@@ -1,4 +1,4 @@
-"""Columns of the files of others, NetCDF, tables or seismograms, as arguments select them."""
+"""Columns of external files (NetCDF, tables, seismograms), selected by command-line arguments."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +13,7 @@ from jointwave.results.netcdf import is_netcdf, load_netcdf
 
 
 class Selection(NamedTuple):
-    """One argument of `--with`: column and label are empty if not given."""
+    """One argument of `--with`; column and label are "" unless given."""
 
     text: str
     path: Path
@@ -26,13 +26,13 @@ class Selection(NamedTuple):
         return split_unit(self.label)[0].lower() == "time"
 
     def fits(self, column: Column) -> bool:
-        """Return whether a column is the one selected, or none is."""
+        """Return whether a column is the selected one, or no column is selected."""
         headers = ("", column.name, f"{column.name} [{column.unit}]")
         return self.column in headers or split_unit(self.column) == (column.name, column.unit)
 
 
 def selection(text: str) -> Selection:
-    """Return a parsed argument, FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL."""
+    """Parse an argument FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL."""
     ends = [len(text), *(i for i, letter in enumerate(text) if letter == ":")]
     end = next((i for i in ends if Path(text[:i]).is_file()), len(text))
     path, which = Path(text[:end]), text[end + 1 :].strip()
@@ -49,10 +49,10 @@ def _is_label(text: str) -> bool:
 
 
 def read_table(times: Selection, least: int, gaps: bool = True) -> Columns:
-    """Return the columns of a file over its times, in the unit of these that is selected.
+    """Return the columns of a file; a selection of its times may give their unit.
 
-    times : their selection, or one that selects no times. least, gaps : as `read_columns` takes
-    them. Raises ValueError, in one phrase.
+    times : selection of the times, or one that selects no times. least, gaps : see `read_columns`.
+    Raises ValueError, in one phrase.
     """
     if is_netcdf(times.path):
         found = read_netcdf(times.path, least)
@@ -65,8 +65,8 @@ def read_table(times: Selection, least: int, gaps: bool = True) -> Columns:
 def selected(
     columns: list[Column], choice: Selection, place_of: Callable[[str], Place | None]
 ) -> list[tuple[Place | None, Column]]:
-    """Return the columns that an argument selects, with their sign and the unit that it gives, each
-    with its place by its name or the label. place_of : returns the place that a text names."""
+    """Return the columns selected by an argument, with its sign and unit, each with the place named
+    by its header or label. place_of : returns the place that a text names."""
     fitting = [one for one in columns if choice.fits(one)]
     label, unit = split_unit(choice.label)
     wanted, found = place_of(label.removeprefix("-")), []
@@ -82,14 +82,14 @@ def selected(
 
 
 def read_netcdf(path: Path, least: int) -> Columns:
-    """Return the waveforms of a result, or of one receiver that was selected from it, each at least
-    so many samples long; raises ValueError, in one phrase, where a file holds none."""
+    """Return the waveforms of a result, or of one receiver selected from it. Raises ValueError, in
+    one phrase, if there are none or they have fewer than `least` samples."""
     places = [name for names in RECEIVERS.values() for name in names]
     wanted = {"time", *QUANTITIES, *RECEIVERS, *places, *NAMES}
     try:
-        # Undecoded, times keep the numbers and the unit of the file.
+        # Undecoded times keep the numbers and the unit of the file.
         found = load_netcdf(path, wanted, decode_times=False)
-    except Exception as error:  # from whichever library xarray uses, on a truncated file
+    except Exception as error:  # of whichever library xarray uses, for a truncated file
         raise ValueError(f"cannot be read as NetCDF: {str(error).partition('. ')[0]}") from None
     found = found.expand_dims([n for n in RECEIVERS if n in found.coords and n not in found.dims])
     held = [name for name in QUANTITIES if name in found]

@@ -1,8 +1,8 @@
-"""Differences of two results beside their waveforms: of peaks, and of the static state.
+"""Differences of two results in peaks and static state, besides those of waveforms.
 
 Peak particle velocity is the largest length of the velocity vector over time; peak stress the
 largest principal stress, in magnitude, or in a section of a pillar the length of its traction. Both
-are of the motion less its static state, at the samples, over the components that both have.
+are of the motion minus its static state, at the samples, over the components of both results.
 """
 
 from math import inf, nan
@@ -21,9 +21,9 @@ Position = tuple[float, ...]
 
 
 class PeakDifference(NamedTuple):
-    """|peak / peak of the reference - 1|: mean over the receivers, the largest, and its receiver.
+    """|peak / peak of the reference - 1|: mean over the receivers, largest value, and its receiver.
 
-    Receivers whose reference has less than 1 % of the largest peak do not count.
+    Receivers where the reference has less than 1 % of the largest peak do not count.
     """
 
     mean: float
@@ -32,8 +32,8 @@ class PeakDifference(NamedTuple):
 
 
 def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDifference]:
-    """Return the difference of two results by peak, "PPV" and "peak stress", of those that both
-    have; the second is the reference."""
+    """Return the differences of two results in "PPV" and "peak stress", for peaks that both have;
+    the second is the reference."""
     found, shared = {}, pairings(one, other)
     for name, quantities in PEAKS.items():
         there: dict[Position, list[Worst]] = {}
@@ -55,11 +55,11 @@ def peak_differences(one: xr.Dataset, other: xr.Dataset) -> dict[str, PeakDiffer
 
 
 def distance_of(what: str, one: xr.Dataset, other: xr.Dataset) -> Worst:
-    """Return the distance of two results that a bound of [expect] is of.
+    """Return the distance of two results that a bound in [expect] applies to.
 
-    what : "" for the worst waveform, a quantity for the worst of its own, "PPV" or "peak stress"
-    for the receiver whose peaks differ most; its floor is that of the worst waveform behind it.
-    nan if the results share no waveform of it.
+    what : "" for the worst waveform, a quantity for its worst waveform, "PPV" or "peak stress" for
+    the receiver whose peaks differ most, with the floor of the worst waveform of its quantities.
+    NaN if the results share no such waveform.
     """
     quantities = PEAKS.get(what, (what,) if what else QUANTITIES)
     if what and not any(p.quantity in quantities for p, *_ in shared_waveforms(one, other)):
@@ -74,8 +74,8 @@ def distance_of(what: str, one: xr.Dataset, other: xr.Dataset) -> Worst:
 
 
 def _peak(components: dict[str, np.ndarray]) -> float:
-    """Return the largest length of a vector, or principal value of a tensor; a component of a
-    tensor that nothing excites is absent."""
+    """Return the largest length of a vector, or principal value of a tensor, whose absent
+    components are not excited."""
     if components.keys() <= (names := stress_components(3)).keys():
         absent = np.zeros_like(next(iter(components.values())))
         stress = np.stack([components.get(name, absent) for name in names], axis=-1)
@@ -85,7 +85,7 @@ def _peak(components: dict[str, np.ndarray]) -> float:
 
 def static_difference(one: xr.Dataset, other: xr.Dataset) -> Worst:
     """Return the largest difference of two static states over the largest static stress of the
-    reference, which comes second; without a static state 0."""
+    reference, which comes second; 0 without a static state."""
     held = [
         (place, float(a[0]), float(b[0]))
         for place, a, b in shared_waveforms(static_state(one), static_state(other))

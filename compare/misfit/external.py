@@ -1,12 +1,12 @@
 """External waveforms of `jointwave compare --with`: quantity, receiver, sign and unit.
 
-A column is called [-]QUANTITY[_COMPONENT]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
-`velocity_x@20.25 [mm/s]`; velocity and displacement are along y where no component is named. Of a
+A column is named [-]QUANTITY[_COMPONENT]@Y [UNIT]: `stress@20`, `-stress@20 [MPa]`,
+`velocity_x@20.25 [mm/s]`; velocity and displacement are along y unless a component is named. In a
 rock mass it is QUANTITY[_COMPONENT]@[X,Y]: `velocity_x@[20,30]`, `stress_xx@[20,30] [MPa]`,
-`traction_n@[20,20]`, `gap@[20,20]`; in a CSV file a header that contains a comma is quoted.
-Stress is positive in compression and motion along +x, +y, +z; a minus sign marks a column with the
-opposite sign, e.g. tension positive. Without a unit, SI. A column with another header is selected
-by COLUMN=LABEL.
+`traction_n@[20,20]`, `gap@[20,20]`; in a CSV file a header with a comma is quoted. Stress is
+positive in compression and motion along +x, +y, +z; a minus sign marks a column with the opposite
+sign, e.g. tension positive. Without a unit, SI. A column with another header is selected by
+COLUMN=LABEL.
 """
 
 from collections import Counter
@@ -28,8 +28,8 @@ from jointwave.compare.misfit.places import Place, parsed, recorded, same
 from jointwave.compare.scenes import AnySource, load
 
 READ_CURVES = "curves of `read_curves`"  # what functions accept
-LEAST_SAMPLES = 3  # needed for a parabola through the peak of a correlation
-#: Names of columns, by the kind of the scene.
+LEAST_SAMPLES = 3  # for a parabola through the peak of a correlation
+#: Examples of column names, by the kind of scene.
 EXAMPLES = {
     "pillar": "stress@20, -stress@20 [MPa] or velocity_x@20.25 [mm/s]",
     "rock mass": "velocity_x@[20,30], -stress_xx@[20,30] [MPa] or traction_n@[20,20]",
@@ -40,9 +40,9 @@ EXAMPLES = {
 class Curves:
     """Waveforms of one file over one time.
 
-    name : its name in tables. file : the path, as given. time : [n] s, strictly increasing.
-    waveforms : [n] by place, SI, compression positive. timed : whether the file or the command
-    gives the unit of its times. bare : the places whose waveform has no unit, and is taken as SI.
+    name : in tables. file : path, as given. time : [n] s, strictly increasing. waveforms : [n] by
+    place, SI, compression positive. timed : whether file or command gives the unit of times. bare :
+    places whose waveform has no unit, and is taken as SI.
     """
 
     name: str
@@ -59,10 +59,10 @@ def read_curves(
     """Read arguments of `--with`, each FILE, FILE:LABEL, FILE:COLUMN or FILE:COLUMN=LABEL, for one
     or several scenes.
 
-    FILE is NetCDF, as `jointwave run` writes it; or a table
-    or seismogram as `cases.records` reads them, a header `time [ms], stress@20 [MPa]` or two bare
-    columns, time in s first. LABEL selects one of several curves, or labels the only one; COLUMN is
-    a header. Empty cells are skipped. One entry per file, and per set of times in it.
+    FILE is NetCDF, as written by `jointwave run`; or a table or seismogram that `cases.records`
+    reads, with a header `time [ms], stress@20 [MPa]` or two bare columns, time in s first. LABEL
+    selects one of several curves, or labels the only one; COLUMN is a header. Empty cells are
+    skipped. Returns one entry per file, and per set of times in it.
 
     Raises SceneError for a file that cannot be read, is not in this format, or has no curve at a
     receiver of one of the scenes.
@@ -86,8 +86,8 @@ def read_curves(
 
 
 def doubts(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
-    """Yield which curves lie at no receiver of a scene, and which have times without a unit that
-    look like milliseconds."""
+    """Yield curves that are at no receiver of a scene, and times without a unit that look like
+    milliseconds."""
     end = scene.time.duration
     for one in curves:
         for place in one.waveforms:
@@ -121,13 +121,13 @@ def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
 
 
 def _of_file(name: str, every: list[Selection]) -> list[Curves]:
-    """Return the curves of a file; raises SceneError, or ValueError in one phrase."""
+    """Return the curves of a file. Raises SceneError, or ValueError in one phrase."""
     path, no_times = every[0].path, Selection("", every[0].path)
     times = next((one for one in every if one.is_time), no_times)
     wanted = [one for one in every if not one.is_time] or [Selection(str(path), path)]
     table = read_table(times, LEAST_SAMPLES)
     seconds, timed = table.time.si(TIME), bool(table.time.unit)
-    groups: dict[bytes, dict[Place, np.ndarray]] = {}  # by the cells that are empty
+    groups: dict[bytes, dict[Place, np.ndarray]] = {}  # by the pattern of empty cells
     found = [one for choice in wanted for one in _selected(table, choice)]
     bare = frozenset(place for place, column in found if not column.unit)
     for place, column in found:
@@ -151,8 +151,8 @@ def _of_file(name: str, every: list[Selection]) -> list[Curves]:
 
 
 def _selected(table: Columns, choice: Selection) -> list[tuple[Place, Column]]:
-    """Return the columns of a file selected by one argument, nan where cells are empty, with their
-    places; raises SceneError for a column without, or if there is none."""
+    """Return the columns of a file selected by one argument, NaN in empty cells, with their places.
+    Raises SceneError for a column without a place, or if no column is selected."""
     found, file = list[tuple[Place, Column]](), str(choice.path)
     for place, column in selected(table.rest, choice, parsed):
         if place is None:

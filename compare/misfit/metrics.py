@@ -1,9 +1,9 @@
 """The distance of one waveform from another, and of one result from another.
 
-A waveform is one component of one quantity at one receiver, minus its static state: the state of a
-scene before its load is not part of the motion. Nothing is pooled: the misfit of two results is
-that of the worst component that carries its quantity's motion at a receiver (`weight`). Every
-function takes a waveform or result first and its reference second, equally sampled.
+A waveform is one component of one quantity at one receiver, minus its static state, which is not
+part of the motion. Nothing is pooled: the misfit of two results is that of the worst component that
+carries its quantity's motion at a receiver (`weight`). Every function takes a waveform or result
+first and its reference second, equally sampled.
 """
 
 from collections.abc import Sequence
@@ -19,15 +19,15 @@ from jointwave.compare.misfit.weight import EXCITED, weigh
 from jointwave.results.dataset import A_RESULT
 from jointwave.results.labels import QUANTITIES, UNITS
 
-ALIKE = 1e-9  # of the duration, by which samples may lie apart
-JUDGED = 10.0  # times its own error: the smallest misfit that a reference can resolve
+ALIKE = 1e-9  # tolerated difference of sample times, over the duration
+JUDGED = 10.0  # smallest misfit that a reference resolves, over its own error
 
 
 class Distance(NamedTuple):
-    """All distances of one waveform from its reference; nan where undefined.
+    """All distances of one waveform from its reference; NaN where undefined.
 
     misfit : relative L2. peak_ratio : of the largest magnitudes. delay : s, positive if late.
-    period_ratio : of the mean periods. envelope, phase : single-valued misfits, None if not asked.
+    period_ratio : of the mean periods. envelope, phase : single-valued misfits or None.
     """
 
     misfit: float
@@ -58,13 +58,13 @@ def relative_l2(one: np.ndarray, other: np.ndarray) -> float:
 
 
 class Worst(NamedTuple):
-    """The misfit of a waveform from its reference, or that of the worst one of two results.
+    """The misfit of a waveform from its reference, or that of the worst waveform of two results.
 
-    misfit : relative L2 distance, or relative to all motion of the quantity at the receiver, then
-    `of_all`, since the component itself carries less than 5 % of it in the reference. place : None
-    without motion. floor : relative error of the reference itself, 0 for a closed form. faint :
-    whether the waveform is too weak to decide the misfit of the results. one, other : the waveform
-    and its reference [n], both minus their static state.
+    misfit : relative L2 distance; with `of_all` relative to all motion of the quantity at the
+    receiver, since the component carries less than 5 % of it in the reference. place : None without
+    motion. floor : relative error of the reference itself, 0 for a closed form. faint : whether the
+    waveform is too weak to decide the misfit of the results. one, other : waveform and reference
+    [n], minus their static state.
     """
 
     misfit: float
@@ -82,18 +82,18 @@ class Worst(NamedTuple):
 
     @property
     def where(self) -> str:
-        """Quantity and receiver in words."""
+        """Quantity and receiver as text."""
         if self.place is None:
             return "nowhere"
         return self.place.words + ", of all motion there" * self.of_all
 
 
 def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
-    """Return the relative L2 misfit of two results of a scene: that of the worst waveform, one
-    component of one quantity at one receiver less its static state, among those that carry at
+    """Return the relative L2 misfit of two results of a scene: that of the worst waveform (one
+    component of one quantity at one receiver, minus its static state) among those that carry at
     least 5 % of their quantity's motion at the receiver.
 
-    Raises SceneError for results that share no receiver, or not the reference's times.
+    Raises SceneError if the results share no receiver, or their times differ.
     """
     for result in (one, other):
         require(result, xr.Dataset, "misfit", "type", A_RESULT)
@@ -106,18 +106,18 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
 
 
 def worst(one: xr.Dataset, other: xr.Dataset, quantities: Sequence[str] = QUANTITIES) -> Worst:
-    """Return the worst waveform of two results among those that carry the motion, of some
-    quantities."""
+    """Return the worst waveform of two results among those of some quantities that carry the
+    motion."""
     found = [p for p in pairings(one, other) if p.place.quantity in quantities and not p.faint]
     return max(found, key=lambda w: w.judged, default=Worst(0.0))._replace(one=None, other=None)
 
 
 def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
-    """Return every waveform that both results have, while the reference is known.
+    """Return every waveform of both results, for as long as the reference is known.
 
-    Left out is what the scene does not excite: what is zero in both, and what the reference keeps
-    below a millionth of the largest motion, unless the result moves there enough to decide. Nothing
-    is left where both stay at rest: where no stress changes by a millionth of the static one.
+    Left out are waveforms that are zero in both, or below a millionth of the largest motion in the
+    reference unless the result moves there enough to decide; and all of them if both stay at rest,
+    with no stress changing by a millionth of the static one.
     """
     until = other.attrs.get("known_until", np.inf)
     n = int(np.searchsorted(other["time"].values, until, side="right"))
@@ -146,7 +146,7 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
 def shared_waveforms(
     one: xr.Dataset, other: xr.Dataset
 ) -> list[tuple[Place, np.ndarray, np.ndarray]]:
-    """Return the waveforms [n] of two results at every place that they share."""
+    """Return the waveforms [n] of two results at every place that both have."""
     ours, theirs = waveforms(one), waveforms(other)
     return [(place, wave, theirs[place]) for place, wave in ours.items() if place in theirs]
 
@@ -171,7 +171,7 @@ def static_state(result: xr.Dataset) -> xr.Dataset:
 
 
 def _found_its_rest(result: xr.Dataset) -> bool:
-    """Whether a result starts from a static state that was sought, and so has a tolerance."""
+    """Return whether a result starts from a computed static state, which has a tolerance."""
     starts, in_plane = result.attrs.get("starts"), result.attrs.get("kind") == "rock mass"
     return starts == "at rest under gravity" or (starts == "prestressed" and in_plane)
 
@@ -182,7 +182,7 @@ def rms(waveform: np.ndarray) -> float:
 
 
 def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:
-    """Return the delay of `one`, s: the peak of the cross-correlation.
+    """Return the delay of `one`, s, from the peak of the cross-correlation.
 
     A parabola through the three largest values resolves a fraction of a sample.
     """
@@ -211,17 +211,17 @@ def mean_period(waveform: np.ndarray, dt: float) -> float:
 def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
     """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by ObsPy.
 
-    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that contains the reference's energy. A
-    reference at rest, or with a period longer than the record, has no such band.
+    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that contains the reference's energy. NaN if
+    there is no such band: the reference is at rest or its period exceeds the record.
     """
     from obspy.signal.tf_misfit import em, pm  # slow to import
 
     period = mean_period(other, dt)
     if not one.any() or not period < dt * len(other):
         return np.nan, np.nan
-    coarse = max(1, int(period / (40 * dt)))  # 40 samples per period: far above the band's end
+    coarse = max(1, int(period / (40 * dt)))  # 40 samples per period, well above the band
     pair, band = (one[::coarse], other[::coarse]), (dt * coarse, 0.25 / period, 4 / period)
-    with np.errstate(divide="ignore"):  # phases where the reference vanishes weigh nothing
+    with np.errstate(divide="ignore"):  # phases have no weight where the reference vanishes
         return float(em(*pair, *band, nf=24)), float(pm(*pair, *band, nf=24))
 
 

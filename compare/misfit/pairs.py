@@ -1,4 +1,4 @@
-"""The distances between the solutions of a scene, pair by pair."""
+"""Distances between the solutions of a scene, pair by pair."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -29,13 +29,13 @@ class Pair(NamedTuple):
 
 GIVEN = "given curves"  # external data
 A_COMPARISON = "a comparison, of `compare`"
-UNLIKELY = 100.0  # between the peaks of a curve without a unit and of a solution: another unit
+UNLIKELY = 100.0  # peak ratio of a curve without a unit that suggests another unit
 
 
 @cache
 def pairs() -> tuple[Pair, ...]:
-    """Return the pairs whose distance is measured, from the solvers' records: sorted by the meaning
-    of their distance, then in the order of the registry."""
+    """Return the pairs whose distance is measured, sorted by its meaning, then as in the
+    registry."""
     every = solvers()
     place = {one.name: i for i, one in enumerate(every)}
     found = [
@@ -63,7 +63,7 @@ class Row(NamedTuple):
 
     place : with the component, if there are several. floor : relative error of the second solution
     itself; a misfit below ten times this is not resolved. faint : too weak to decide a misfit.
-    of_all : whether the misfit is relative to all motion of the quantity there, see `Worst`.
+    of_all : whether the misfit is relative to all motion of the quantity there.
     """
 
     pair: Pair
@@ -93,10 +93,10 @@ class Row(NamedTuple):
 
 @dataclass
 class Comparison:
-    """One variant of a scene, its solutions, and why the others do not apply.
+    """One variant of a scene, its solutions, and why others do not apply.
 
-    scene : of either kind. results : by name. reasons : name to reason, of solutions that do not
-    apply, or `failed`. rows : the distances. besides : the external curves, one entry per file.
+    scene : of either kind. results : by name. reasons : by name, for solutions that do not apply or
+    `failed`. rows : the distances. besides : external curves, one entry per file.
     """
 
     scene: Any
@@ -113,7 +113,7 @@ def measure(
     """Return the distances of every available pair, for every waveform that both have.
 
     Envelope and phase misfits are computed for stress, shear, velocity and rotation, if not faint.
-    scene : in which two solvers may resolve different models; None: as their records have it.
+    scene : in which two solvers may resolve different models; None: as their records say.
     """
     rows = []
     for pair in pairs():
@@ -133,8 +133,8 @@ def measure(
 def measure_curves(
     beside: AlignedCurve, results: dict[str, xr.Dataset], spectral: bool = False
 ) -> list[Row]:
-    """Return the distances of a file's curves from every solution that has a waveform there; faint
-    is what a solution does not excite, unless the curve moves there enough to decide."""
+    """Return the distances of a file's curves from every solution that has a waveform there. A row
+    is faint if the solution is not excited there, unless the curve moves enough to decide."""
     rows, time, own = [], beside.time, beside.curves.time
     for name, result in results.items():
         moved = {place: rms(wave) for place, wave in waveforms(motion(result)).items()}
@@ -153,8 +153,8 @@ def measure_curves(
 
 
 def unit_doubts(found: Comparison) -> Iterator[str]:
-    """Yield which external curves without a unit have another size than the first solution, and
-    which stresses begin without the static one of the scene."""
+    """Yield external curves without a unit whose size differs from the first solution's, and
+    stresses that begin without the scene's static stress."""
     first = next(iter(found.results), "")
     for beside in found.besides:
         for place, values in beside.curves.waveforms.items() if first else ():

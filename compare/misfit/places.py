@@ -1,7 +1,7 @@
 """Places of waveforms: one component of one quantity at one receiver.
 
-A receiver of a pillar lies at y, one of a rock mass at (x, y), in space at (x, y, z). In labels and
-column headers a place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in words
+A receiver is at y in a pillar, at (x, y) in a rock mass, in space at (x, y, z). In labels and
+column headers a place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30]`; in text
 "velocity x at [20, 30] m".
 """
 
@@ -17,8 +17,8 @@ from jointwave.results.dataset import NAMES, OF_JOINTS, OF_SECTIONS
 from jointwave.results.labels import AXES, QUANTITIES, RECEIVERS
 from jointwave.results.stress import stress_components
 
-#: By the number of coordinates of a receiver: the components of each quantity in labels, "" if
-#: it has only one, and the key of [record] with its receivers.
+#: Components of each quantity in labels, "" if there is only one, by the number of coordinates of
+#: a receiver.
 COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
     1: {
         "stress": ("",),
@@ -65,17 +65,17 @@ class Place(NamedTuple):
 
     @property
     def receiver(self) -> str:
-        """Its position in words: "15 m", "[20, 30] m"."""
+        """Position as text: "15 m", "[20, 30] m"."""
         return f"{self._at('g', ', ')} m"
 
     @property
     def words(self) -> str:
-        """The place in words: "shear x at 15 m", "velocity x at [20, 30] m"."""
+        """The place as text: "shear x at 15 m", "velocity x at [20, 30] m"."""
         return f"{self.named} at {self.receiver}"
 
     @property
     def heading(self) -> str:
-        """The place in words to all digits, for column headers: "shear x at y = 15 m"."""
+        """The place as text with all digits, for column headers: "shear x at y = 15 m"."""
         return f"{self.named} at {'y = ' * (len(self.at) == 1)}{self._at('.12g', ', ')} m"
 
     @property
@@ -86,27 +86,25 @@ class Place(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The key of [record] with its receivers."""
+        """The key of [record] that lists its receivers."""
         if len(self.at) == 1:
             return "stress" if self.quantity in OF_SECTIONS else "velocity"
         return "joints" if self.quantity in OF_JOINTS else "points"
 
     def is_at(self, other: "Place") -> bool:
-        """Return whether it is the same waveform as another place, of its only component if none is
-        named."""
+        """Return whether it is the same waveform as another place; no component fits any."""
         of_one = self.quantity == other.quantity and self.component in ("", other.component)
         return of_one and same(self.at, other.at)
 
     def waveform(self, result: xr.Dataset) -> np.ndarray | None:
-        """Return this waveform of a result [n] in SI; None if the result does not contain it."""
+        """Return this waveform of a result [n] in SI; None if the result has none."""
         of_quantity = result[[self.quantity]] if self.quantity in result else xr.Dataset()
         found = waveforms(of_quantity).items()
         return next((wave for place, wave in found if self.is_at(place)), None)
 
 
 def spelled(text: str) -> Place | None:
-    """Return the quantity, component and receiver of a label as it spells them; None if it is none,
-    or of no known quantity."""
+    """Return quantity, component and receiver as spelled in a label; None for other texts."""
     match = LABEL.fullmatch(text.strip())
     if match is None or match[1].lower() not in UNITS:
         return None
@@ -118,7 +116,7 @@ def spelled(text: str) -> Place | None:
 
 
 def parsed(text: str) -> Place | None:
-    """Return the place given by a label; None if it gives none of a scene."""
+    """Return the place given by a label; None if no scene can have it."""
     place = spelled(text)
     if place is None:
         return None
@@ -129,7 +127,7 @@ def parsed(text: str) -> Place | None:
 
 
 def waveforms(result: xr.Dataset, suffix: str = "") -> dict[Place, np.ndarray]:
-    """Return every waveform [n] of a result in SI by its place, which names the component.
+    """Return every waveform [n] of a result in SI by its place, components included.
 
     suffix : of the variables; "_error" for the bounds on a result's own root-mean-square error [1].
     """
@@ -146,14 +144,14 @@ def waveforms(result: xr.Dataset, suffix: str = "") -> dict[Place, np.ndarray]:
 
 
 def shown(place: Place, result: xr.Dataset) -> Place:
-    """Return a place as it is shown: without its component if a result has only one."""
+    """Return a place for display, without its component if a result has only one."""
     alone = len(places_of(result, place.quantity)[1]) == 1
     return place._replace(component="") if alone else place
 
 
 def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]], list[str]]:
-    """Return the receivers' positions of a quantity, m, and the names of its components, "" for
-    the only one."""
+    """Return the receivers' positions of a quantity, m, and the names of its components, "" for the
+    only one."""
     found = result[quantity]
     (receivers,) = (name for name in RECEIVERS if name in found.dims)
     columns = [result[name].values.tolist() for name in RECEIVERS[receivers] if name in result]
@@ -163,11 +161,11 @@ def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]
 
 
 def recorded(scene: AnyScene, key: str) -> list[tuple[float, ...]]:
-    """Return the receivers of a key of [record], m; empty for a key of the other kind of scene."""
+    """Return the receivers of a key of [record], m; empty if the kind of scene has no such key."""
     places: list[Any] = getattr(scene.record, key, [])
     return [tuple(np.atleast_1d(one).tolist()) for one in places]
 
 
 def same(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
-    """Return whether two receivers coincide, to the digits written in files."""
+    """Return whether two receivers coincide to the digits written in files."""
     return len(one) == len(other) and bool(np.isclose(one, other, rtol=1e-9, atol=1e-9).all())

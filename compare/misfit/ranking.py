@@ -1,11 +1,10 @@
 """Ranking of solutions by the detail that they resolve, and the reference of a scene.
 
-The reference of a scene is its most complete solution: the finest rock first, then an exact one
-before a computed one. Where the intact rock is unknown, rigid blocks and homogenised rock are two
-readings of the same wave speeds: an exact solution then comes before a computed one. A solution
-that lacks an effect of the scene is never a reference. A solution that no other, at least as fine,
-checks independently is "not checked". Only two solutions of the same model differ by a numerical
-error.
+The reference of a scene is its most complete solution: the finest rock first, then exact before
+computed solutions. If the intact rock is unknown, rigid blocks and homogenised rock are two models
+of the same wave speeds: exact solutions then come first. A solution that lacks an effect of the
+scene is never a reference. A solution is "not checked" if no other, at least as fine, checks it
+independently. Only solutions of the same model differ by a numerical error.
 """
 
 from collections.abc import Iterable
@@ -20,7 +19,7 @@ from jointwave.compare.solvers.record import Answer, Kind, Rock
 
 
 class Reference(NamedTuple):
-    """The reference of a scene's solutions, and the reason in words."""
+    """The reference of a scene's solutions, and the reason as text."""
 
     name: str
     reason: str
@@ -32,8 +31,8 @@ NOT_CHECKED = "not checked independently"
 def lacks(name: str, scene: AnyScene) -> str:
     """Return the effect of a scene that an applicable solution leaves out, "" if none.
 
-    The thickness of a soft layer: rigid blocks model it as a joint. The lateral inertia of a column
-    in two or three dimensions: a bar has none.
+    Rigid blocks model a soft layer's thickness as a joint; a bar has no lateral inertia of a column
+    in two or three dimensions.
     """
     of = solver(name)
     if not scene.is_column:
@@ -49,7 +48,7 @@ def lacks(name: str, scene: AnyScene) -> str:
 
 
 def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
-    """Return the most complete solution among `names`; None if none has all effects."""
+    """Return the most complete solution among `names`; None if each lacks an effect."""
     complete = [name for name in names if not lacks(name, scene)]
     if not complete:
         return None
@@ -60,10 +59,8 @@ def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:
 
 
 def reference_of(name: str, names: Iterable[str], scene: AnyScene) -> Reference | None:
-    """Return the reference of one solution: the finest of the others.
-
-    None if none of them is finer, or equally fine and exact: it is not checked independently.
-    """
+    """Return the reference of one solution: the finest of the others. None if none of them is
+    finer, or equally fine and exact: the solution is not checked independently."""
     found = finest([other for other in names if other != name], scene)
     if found is None:
         return None
@@ -71,32 +68,32 @@ def reference_of(name: str, names: Iterable[str], scene: AnyScene) -> Reference 
 
 
 def own_exact(name: str, names: Iterable[str], scene: AnyScene) -> str | None:
-    """Return the exact solution of an engine's own model among `names`, the reference of its
-    numerical error; None if there is none."""
+    """Return the exact solution of an engine's own model among `names`, the reference for its
+    numerical error; None without one."""
     own = [n for n in names if n != name and solver(n).exact and same_model(name, n, scene)]
     found = finest(own, scene)
     return found.name if found else None
 
 
 def same_model(one: str, other: str, scene: AnyScene) -> bool:
-    """Return whether two solutions resolve the same in a scene, so that what is between them is
-    numerical error: the same rock with the same effects, and more than one mechanism alone."""
+    """Return whether two solutions resolve the same model of a scene, so that their distance is a
+    numerical error: the same rock with the same effects, not a single mechanism."""
     a, b = solver(one), solver(other)
     whole = a.discretised and b.discretised
     return a.rock is b.rock and whole and lacks(one, scene) == lacks(other, scene)
 
 
 def kind_of(one: str, other: str, scene: AnyScene) -> Kind:
-    """Return what the distance of two solutions is in a scene."""
+    """Return the meaning of the distance of two solutions in a scene."""
     if not (solver(one).exact or solver(other).exact):
         return Kind.BETWEEN
     return Kind.NUMERICAL if same_model(one, other, scene) else Kind.MODELLING
 
 
 def deciding(scene: AnyScene) -> dict[str, Answer]:
-    """Return whether each of the solutions that verdicts need applies to a scene: the engines, the
-    reference and the exact solution of each engine's own model, and those named by [expect]. All
-    solutions if no engine applies."""
+    """Return whether each solution needed for verdicts applies to a scene: engines, their
+    references, the exact solutions of their models, and those named in [expect]; all solutions if
+    no engine applies."""
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
     if not ENGINES.keys() & able:
@@ -117,11 +114,11 @@ def _fineness(name: str, scene: AnyScene) -> tuple[bool, int, int]:
 
 
 def solvers(scene: AnySource) -> dict[str, str]:
-    """Return all engines and exact solutions of a scene's kind by name, with the reason why one
-    does not apply; "" if it does."""
+    """Return all engines and exact solutions for a scene's kind by name, with the reason why one
+    does not apply, or ""."""
     return {name: answer.reason for name, answer in applicable(load(scene)).items()}
 
 
 def applicable(scene: AnyScene) -> dict[str, Answer]:
-    """Return whether each engine and exact solution of a scene's kind applies to it."""
+    """Return whether each engine and exact solution for a scene's kind applies to it."""
     return {name: applies(name, scene) for name in names(scene.kind)}

@@ -1,9 +1,9 @@
-"""The weight of each component in the motion of its quantity, which decides what a misfit follows.
+"""The weight of each component in its quantity's motion, which decides how a misfit is measured.
 
 The motion of a quantity at a receiver is the root mean square over time of its vector or tensor,
-less its static state: velocity, displacement, rotation, the traction of a joint, its gap and slip,
-the stress and shear of a section, or the stress tensor with its shear stress counted twice. It does
-not depend on the axes.
+minus its static state: velocity, displacement, rotation, the traction of a joint, its gap and slip,
+the stress and shear of a section, or the stress tensor with its shear stress counted twice. It is
+independent of the axes.
 """
 
 from collections.abc import Sequence
@@ -15,24 +15,24 @@ import pandas as pd
 from jointwave.compare.misfit.places import Place
 from jointwave.results.labels import UNITS
 
-CARRIES = 0.05  #: part of the motion from which a component decides a misfit
-FAINT = 0.01  #: part of the largest motion of a unit from which a receiver decides one
-EXCITED = 1e-6  #: part of the largest motion of a unit below which a scene does not excite anything
-#: Pa s/m: stress below this times the velocity, 1e-8 of what waves in soft soil have, is round-off
-#: of rock that moves as a whole.
+CARRIES = 0.05  #: least part of the motion for a component to decide a misfit
+FAINT = 0.01  #: least part of a unit's largest motion for a receiver to decide a misfit
+EXCITED = 1e-6  #: part of a unit's largest motion below which a waveform is not excited
+#: Pa s/m: stress over velocity below which stress is round-off of rock that moves as a whole; 1e-8
+#: of that in waves in soft soil.
 RIGID = 1e-3
-ROUND_OFF = 1e-9  # m: rotations (rad) below this part of displacements, and the reverse, are zero
+ROUND_OFF = 1e-9  # m: ratio of displacement and rotation (rad) below which either is round-off
 _ONE_VECTOR = {"shear": "stress", "slip": "gap"}
 
 
 class Weight(NamedTuple):
-    """What the misfit of each waveform is relative to, and from where on it decides, [waveform].
+    """The norm that the misfit of each waveform is relative to, and when it decides, [waveform].
 
-    norm : root mean square: of the reference's component where it carries at least 5 % of the
-    motion; else of all motion there; at a receiver below 1 % of the loudest one, of that.
-    least : misfit from which it decides: 0 of a component that carries, else CARRIES or FAINT; inf
-    where the reference leaves out all of a unit while something else moves.
-    excited : whether the reference moves there at all.
+    norm : root mean square of the reference's component, if it carries at least 5 % of the motion;
+    else of all motion there; at a receiver below 1 % of the loudest one, of the loudest. least :
+    misfit from which the waveform decides: 0 if it carries, else CARRIES or FAINT; inf if a whole
+    unit is at rest in the reference while another moves. excited : whether the reference moves
+    there at all.
     """
 
     norm: np.ndarray
@@ -52,7 +52,7 @@ def weigh(places: Sequence[Place], moved: np.ndarray) -> Weight:
     units = np.array([unit_of[p.quantity] for p in places], dtype=int)
     loudest = np.zeros(len(UNITS))
     np.maximum.at(loudest, units, motion)
-    loudest[:3] *= loudest[2] >= ROUND_OFF * loudest[3]  # else the rock only turns
+    loudest[:3] *= loudest[2] >= ROUND_OFF * loudest[3]  # else the rock only rotates
     loudest[0] *= loudest[0] >= RIGID * loudest[1]
     at_rest = ((loudest == 0) & loudest.any())[units]
     loudest[3] = max(loudest[3], ROUND_OFF / FAINT * loudest[2])

@@ -1,6 +1,6 @@
 """Spectra; transfer function, apparent Q and speed of a wave between two receivers.
 
-Take records of one passage: `result.sel(time=slice(0, 0.02))` leaves out what is reflected later.
+Use records of a single passage: `result.sel(time=slice(0, 0.02))` leaves out later reflections.
 """
 
 import numpy as np
@@ -12,18 +12,18 @@ from jointwave.compare.misfit.metrics import delay, motion
 from jointwave.compare.readings.recordings import Recording, recording, sampling, variables
 from jointwave.results.labels import RECEIVERS
 
-WAYS = "way_1", "way_2", "way_3"  # along the axes of receivers, from the first one
-HEARD = 0.01  # of the largest amplitude of the first record: frequencies that are read
+WAYS = "way_1", "way_2", "way_3"  # offsets from the first receiver along the axes
+HEARD = 0.01  # least amplitude of a frequency that is read, over the first record's largest
 
 
 def waveforms(
     result: Recording, quantity: str = "velocity", axis: str | None = None
 ) -> xr.DataArray:
-    """Return one component of a quantity less its static state [receiver, time], with `distance`
-    (m) from the first receiver, and the coordinates of its way, nan where it is not known.
+    """Return one component of a quantity minus its static state [receiver, time], with the
+    `distance` (m) and the offsets along the axes from the first receiver, NaN if unknown.
 
-    result : or a recording, as `recording` takes it. axis : the component, "x", "y", "xy" ...;
-    None: the one that moves most.
+    result : a result or a recording, see `recording`. axis : component, "x", "y", "xy" ...; None:
+    the one with the largest motion.
     """
     result = recording(result, quantity)
     if quantity not in result:
@@ -45,10 +45,10 @@ def waveforms(
 
 
 def spectra(result: Recording, quantity: str = "velocity", axis: str | None = None) -> xr.DataArray:
-    """Return the Fourier spectrum of one component at every receiver, per Hz: the integral of
-    x e^{-i omega t} dt of its motion x by the trapezium rule, complex [receiver, frequency].
+    """Return the Fourier spectrum of one component at every receiver, per Hz: the integral of x
+    e^{-i omega t} dt by the trapezium rule, complex [receiver, frequency].
 
-    result, quantity, axis : as `waveforms` has them. `abs` of it is the amplitude spectrum.
+    result, quantity, axis : see `waveforms`. The amplitude spectrum is its `abs`.
     """
     row = waveforms(result, quantity, axis)
     frequency, x = _frequencies(row), row.values.copy()
@@ -69,10 +69,9 @@ def wave_speed(
     axis: str | None = None,
 ) -> float:
     """Return the speed of a wave from one receiver to another, m/s: their distance over the delay
-    at which their waveforms correlate best.
+    of best correlation; negative if the wave reaches the other one first.
 
-    one, other : receivers by number. quantity, axis : of which waveforms, as `waveforms` has
-    them. Negative where the other one is reached first.
+    one, other : receivers by number. quantity, axis : of the waveforms, see `waveforms`.
     """
     way, late = _passage(waveforms(result, quantity, axis), one, other)
     return way / late
@@ -86,11 +85,11 @@ def transfer_function(
     axis: str | None = None,
     water_level: float = 1e-3,
 ) -> xr.DataArray:
-    """Return the spectrum at one receiver over that at another, complex [frequency], with
-    e^{i omega t}: a wave that arrives later has a falling phase.
+    """Return the spectrum at one receiver over that at another, complex [frequency], with e^{i
+    omega t}: a later arrival has a falling phase.
 
-    water_level : of the first one's largest amplitude; below it the divisor is held there (Clayton
-    & Wiggins, Geophys. J. R. Astr. Soc. 47, 1976).
+    water_level : least value of the divisor, over its largest amplitude (Clayton & Wiggins,
+    Geophys. J. R. Astr. Soc. 47, 1976).
     """
     row = waveforms(result, quantity, axis)
     first, last = np.fft.rfft(_pair(row, one, other))
@@ -111,7 +110,7 @@ def quality_factor(
     wave between two receivers, where the first one's spectrum is above a hundredth of its largest.
 
     The ratio of both spectra is exp(-a x - i omega x / c) and Q = omega / (2 a c) (Aki & Richards,
-    Quantitative Seismology, 2002, 5.5). What joints reflect is lost to Q as heat is.
+    Quantitative Seismology, 2002, 5.5). Reflection from joints lowers Q as heat does.
     """
     row = waveforms(result, quantity, axis)
     (first, last), frequency = np.fft.rfft(_pair(row, one, other)), _frequencies(row)
@@ -121,7 +120,7 @@ def quality_factor(
     omega, ratio = 2 * np.pi * frequency.values[heard], last[heard] / first[heard]
     lag = omega * late - np.angle(ratio * np.exp(1j * omega * late))  # to half a turn of `late`
     loss = -np.log(np.abs(ratio))
-    with np.errstate(divide="ignore"):  # nothing is lost
+    with np.errstate(divide="ignore"):  # without any loss
         quality = lag / (2 * loss)
     named = {
         "attenuation": (loss / way, "attenuation", "1/m"),
@@ -132,7 +131,7 @@ def quality_factor(
 
 
 def known_places(row: xr.DataArray) -> np.ndarray:
-    """Return the receivers' places [space, receiver], m; raises SceneError without them."""
+    """Return the receivers' places [space, receiver], m. Raises SceneError if they are unknown."""
     found = np.array([row[name].values for name in WAYS if name in row.coords])
     if np.isnan(found).any():
         allowed = "are needed: columns named as velocity@20, or (time, values, distances)"
@@ -146,7 +145,7 @@ def _frequencies(row: xr.DataArray) -> xr.Variable:
 
 
 def _pair(row: xr.DataArray, *receivers: int) -> np.ndarray:
-    """Return the waveforms at receivers by number [receiver, time]."""
+    """Return the waveforms of some receivers by number [receiver, time]."""
     count = row.sizes["receiver"]
     for one in receivers:
         if not -count <= one < count:
@@ -155,7 +154,7 @@ def _pair(row: xr.DataArray, *receivers: int) -> np.ndarray:
 
 
 def _passage(row: xr.DataArray, one: int, other: int) -> tuple[float, float]:
-    """Return the distance of two receivers, m, and how much later the other one moves, s."""
+    """Return the distance of two receivers, m, and the delay at the other one, s."""
     places, (first, last) = known_places(row), _pair(row, one, other)
     if not (way := float(np.linalg.norm(places[:, other] - places[:, one]))):
         raise SceneError("result", "receivers", f"{one} and {other}", "must be two places")

@@ -1,15 +1,15 @@
-"""Deconvolution: the incident motion at the start of a column, from the motion of its free end.
+"""Deconvolution: the incident motion at a column's start from the motion of its free end.
 
-The ratio of the free end's motion to the incident wave's is H = 2 Z v(L), Z the impedance of the
-rock behind the start and v(L) the end's velocity under an end stress of 1 (`laplace.transfer`). The
-division is done in the frequency domain, with a water level where the joints transmit little
+The ratio of the free end's motion to the incident wave's is H = 2 Z v(L), with the impedance Z of
+the rock behind the start and the end's velocity v(L) under a unit end stress (`laplace.transfer`).
+The division is done in the frequency domain, with a water level where the joints transmit little
 (Clayton & Wiggins, Geophys. J. R. Astr. Soc. 47, 1976):
 
     incoming = surface conj(H) / max(|H|^2, (w max|H|)^2)
 
 In uniform rock H = 2 exp(-i omega L / c): half of the record, L / c earlier.
 
-Valid for linear joints and rock, in axial motion or, where the load is across the axis, in shear.
+Valid for linear joints and rock, in axial motion or, if the load is across the axis, in shear.
 """
 
 from dataclasses import replace
@@ -36,17 +36,17 @@ HELD = (
 def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-3) -> xr.DataArray:
     """Return the wave incident on a column's quiet start, from the motion of its free end.
 
-    It can serve as the load of a compliant base (`load.quantity`). Unit and sampling interval are
-    those of the record; it begins earlier by the travel time through the intact rock.
+    It can be the load of a compliant base (`load.quantity`). Unit and sampling interval are those
+    of the record; it begins earlier by the travel time through the intact rock.
 
     Parameters
     ----------
     scene : a pillar with ends "quiet" and "free"; only the load's direction is used.
-    surface : velocity or acceleration over `time` (s) only, equally spaced, of
-        the whole motion: a truncated record makes the end of the result wrong.
+    surface : velocity or acceleration over `time` (s) only, equally spaced, of the whole motion: a
+        truncated record distorts the end of the result.
     water_level : w, relative to the largest |H|: frequencies with a lower |H| are attenuated.
 
-    Raises SceneError if the scene is no pillar or the column is not linear.
+    Raises SceneError if the scene is not a pillar or the column is not linear.
     """
     from scipy.fft import next_fast_len
 

@@ -1,14 +1,14 @@
 """Phase speed against frequency, of a row of receivers (f-k) and of the theory of a pillar.
 
-The f-k spectrum is that of a row of receivers at any places x_j on a line with the spectra U_j,
+The f-k spectrum of a row of receivers at any places x_j on a line, with the spectra U_j, is
 
     P(f, k) = |sum_j U_j exp(i k x_j)|^2 / (n sum_j |U_j|^2),
 
-1 where all of the motion is one wave of this wavenumber; the speed is 2 pi f over the k of its peak
-(Capon, Proc. IEEE 57, 1969, the conventional estimate).
+1 if all motion is one wave of this wavenumber; the speed is 2 pi f over the k of its peak (Capon,
+Proc. IEEE 57, 1969, the conventional estimate).
 
-In an endless pillar with a joint every d, with e^{i (omega t - k y)}, the joints' eta, and
-w^2 = omega^2 - i alpha omega of damping alpha by mass:
+In an endless pillar with a joint every d, with e^{i (omega t - k y)}, the joints' eta, and w^2 =
+omega^2 - i alpha omega with mass damping alpha:
 
     rigid blocks   sin(k d / 2) = (w d / 2 c) / sqrt(1 + i omega eta)     (Brillouin 1946)
     jointed rock   cos(k d) = cos(q d) - rho w^2 / (2 q K (1 + i omega eta)) sin(q d),
@@ -31,19 +31,19 @@ from jointwave.compare.readings.attenuation import known_places, waveforms
 from jointwave.compare.readings.recordings import Recording, sampling, variables
 from jointwave.compare.scenes import AnySource, load
 
-HEARD = 1e-3  # of the largest amplitude: frequencies that are looked at
-FINER = 64  # wavenumbers in the width of a peak
+HEARD = 1e-3  # least amplitude of a frequency that is used, over the largest
+FINER = 64  # wavenumbers per width of a peak
 
 
 def dispersion(
     result: Recording, quantity: str = "velocity", axis: str | None = None
 ) -> xr.Dataset:
-    """Return the f-k spectrum of all receivers, `power` [frequency, wavenumber], and of its peak
-    `phase_speed` (m/s) and `coherence` (0 to 1) [frequency].
+    """Return the f-k spectrum of all receivers, `power` [frequency, wavenumber], and the
+    `phase_speed` (m/s) and `coherence` (0 to 1) of its peak [frequency].
 
-    Frequencies are those that hold a thousandth of the largest amplitude. Wavenumbers (1/m) reach
-    to half a wave between the two nearest receivers; those of waves that come back are negative.
-    Raises SceneError for receivers that are not on a line.
+    Frequencies have at least a thousandth of the largest amplitude. Wavenumbers (1/m) reach half a
+    wave between the two nearest receivers, and are negative for waves towards the first receiver.
+    Raises SceneError if receivers are not on a line.
     """
     row = waveforms(result, quantity, axis)
     x, spectra = _along(known_places(row)), np.fft.rfft(row.values)
@@ -60,7 +60,7 @@ def dispersion(
     bend = left - 2 * top + right
     shift = np.divide(left - right, 2 * bend, out=np.zeros_like(top), where=bend < 0)
     peak, coherence = k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
-    with np.errstate(divide="ignore"):  # everywhere at once
+    with np.errstate(divide="ignore"):  # k = 0: in phase everywhere
         speed = 2 * np.pi * frequency / peak
     named = {
         "phase_speed": (speed, "phase speed", "m/s"),
@@ -86,12 +86,11 @@ def _along(places: np.ndarray) -> np.ndarray:
 
 def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
     """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] of waves along an
-    endless pillar of a scene's ordinary joints.
+    endless pillar with a scene's ordinary joints.
 
-    rock : "rigid blocks" of rock without a quality factor, "bar" and, where the scene gives
-    intact_modulus, "jointed rock". frequency : Hz. Where waves do not pass, the attenuation says
-    so. Raises SceneError of segments and random joints, motion across the axis, joints that
-    stiffen, and local damping.
+    rock : "rigid blocks" (without a quality factor), "bar" and, given intact_modulus, "jointed
+    rock". frequency : Hz; stop bands appear as attenuation. Raises SceneError for segments, random
+    joints, motion across the axis, joints that stiffen, and local damping.
     """
     pillar = pillar_of(load(scene), "dispersion_theory")
     for key, there, allowed in (

@@ -1,4 +1,4 @@
-"""The plane waves that the loads and waves of a scene send into its rock, before any run."""
+"""The plane waves that a scene's loads and waves send into its rock, before any run."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -18,17 +18,17 @@ from jointwave.cases.schema.pulse import Wave
 from jointwave.compare.exact.rock_mass.effective_medium import MediumField
 from jointwave.compare.exact.rock_mass.field import field_of
 
-SAMPLES = 20_000  # of a pulse: its peak to 1e-7, its energy to 1e-6
-ABSORBS = "quiet", "matched"  # half of a pressure on it
-SEEN = 0.01  # of the peak of a wavelet, which never quite begins or ends
+SAMPLES = 20_000  # of a pulse: gives its peak to 1e-7, its energy to 1e-6
+ABSORBS = "quiet", "matched"  # ends or sides that take half of a pressure
+SEEN = 0.01  # of its peak, the threshold for a wavelet's length
 
 
 class EnteringWave(NamedTuple):
-    """A plane wave as it enters: its source, peak stress (Pa) and particle velocity (m/s), the
-    length of its pulse (m; None of a step) and its energy over the area of its front (J/m2).
+    """A plane wave as it enters: source, peak stress (Pa) and particle velocity (m/s), length of
+    the pulse (m; None for a step) and energy per area of the front (J/m2).
 
-    A wavelet is as long as it exceeds a hundredth of its peak. What goes on is cut where the scene
-    ends.
+    A wavelet's length is where it exceeds a hundredth of its peak. Lasting pulses are cut at the
+    scene's end.
     """
 
     source: str
@@ -39,8 +39,8 @@ class EnteringWave(NamedTuple):
 
 
 def entering_waves(scene: AnyScene) -> list[EnteringWave]:
-    """Return the plane waves that enter a scene; none of a couple, a force at a point, or a
-    pressure on an opening or on a part of a side."""
+    """Return the plane waves that enter a scene; none from couples, point forces, or pressures on
+    an opening or on part of a side."""
     found, sources = [*_of_waves(scene)], dict[str, Any](scene.sources)
     for key, load in sources.items():
         part = getattr(load, "arm", None) or getattr(load, "between", None)  # or a couple
@@ -52,7 +52,7 @@ def entering_waves(scene: AnyScene) -> list[EnteringWave]:
 def _of_waves(scene: Any) -> Iterator[EnteringWave]:
     try:
         field = field_of(scene) if scene.waves else None
-    except SceneError:  # no engine takes them, which says why
+    except SceneError:  # engines refuse the scene with this error
         field = None
     for i, one in enumerate(scene.waves):
         if isinstance(field, MediumField):
@@ -97,7 +97,7 @@ def _wave(
     """Return the wave whose particle velocity (m/s) is `gain` times a history."""
     end = min(duration, history.end or duration)
     breaks = [t for t in history.breaks if 0 <= t <= end]
-    if isinstance(history, Integrated):  # the velocity stays when the acceleration has ended
+    if isinstance(history, Integrated):  # the velocity remains after the acceleration ends
         breaks.append(duration)
     times = np.union1d(np.linspace(0.0, end, SAMPLES), breaks)
     values = gain * np.asarray(history.value(times))

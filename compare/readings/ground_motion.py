@@ -1,8 +1,8 @@
 """The severity of a motion: peak particle velocity, Arias intensity, response spectra.
 
-All are exact for straight lines between the samples that are recorded, velocities or accelerations;
-spectra of a recorded velocity for an acceleration that is its slope between two samples in the
-middle of these, and straight lines between the middles.
+All are exact for linear interpolation between the recorded samples of velocity or acceleration,
+except that spectra of a velocity use its slopes between samples as accelerations at the midpoints,
+linear between these.
 """
 
 from collections.abc import Sequence
@@ -16,14 +16,14 @@ from jointwave.compare.readings.recordings import Recording, recording, sampling
 from jointwave.results.dataset import A_RESULT
 
 GRAVITY = 9.81  # m/s2
-POINTS = 1024  # a period of an oscillator, at which its displacement is looked at
+POINTS = 1024  # per period of an oscillator, at which its displacement is evaluated
 
 
 def ppv(result: Recording, quantity: str = "velocity") -> xr.DataArray:
-    """Return the peak particle velocity at every receiver, m/s: of the vector's length.
+    """Return the peak particle velocity (length of the vector) at every receiver, m/s.
 
-    Of a recorded acceleration at its samples, from rest at the first one. quantity : of a recording
-    that does not name its own.
+    An acceleration is integrated, from rest at its first sample. quantity : of a recording that
+    does not name its own.
     """
     found = recording(result, quantity)
     if "velocity" not in found:
@@ -42,7 +42,7 @@ def ppv_map(result: xr.Dataset) -> xr.DataArray:
     """Return the peak particle velocity over all snapshots of a result [node], m/s, with the nodes'
     x, y and z (m) as coordinates.
 
-    A peak between two snapshots is not seen. Raises SceneError without `record.fields`.
+    Peaks between snapshots are missed. Raises SceneError without `record.fields`.
     """
     require(result, xr.Dataset, "ppv_map", "type", A_RESULT)
     if "field_velocity" not in result:
@@ -85,14 +85,14 @@ def response_spectrum(
 ) -> xr.Dataset:
     """Return the response spectra of the motion at every receiver in each direction.
 
-    displacement (m) is the largest |x| of x'' + 2 zeta w x' + w^2 x = -a, between samples too, and
-    after the record, over which the ground no longer accelerates; pseudo_velocity (m/s) and
-    pseudo_acceleration (m/s2) are w and w^2 times it, which of short periods is the largest |a|.
-    With n samples in a period of the motion, spectra of a velocity are low by (2 pi / n)^2 / 8, of
-    an acceleration by two thirds of that.
+    displacement (m) is the largest |x| of x'' + 2 zeta w x' + w^2 x = -a, also between samples and
+    after the record, when the ground does not accelerate; pseudo_velocity (m/s) and
+    pseudo_acceleration (m/s2) are w and w^2 times it; for short periods the latter is the largest
+    |a|. With n samples in a period of the motion, spectra of a velocity are low by (2 pi / n)^2 /
+    8, of an acceleration by two thirds of that.
 
-    periods : of the oscillator, s. damping : zeta, of the critical one, below 1. quantity : of a
-    recording that does not name its own.
+    periods : of the oscillator, s. damping : zeta, of critical, below 1. quantity : of a recording
+    that does not name its own.
     """
     periods = np.asarray(periods, dtype=float)
     if not 0 <= damping < 1:
@@ -121,17 +121,17 @@ def response_spectrum(
 def _largest_displacement(
     ground: np.ndarray, dt: float, omega: float, damping: float
 ) -> np.ndarray:
-    """Return max |x| of an oscillator at rest until the ground moves [...], m, also after it, by
-    the exact response (Nigam & Jennings, Bull. Seism. Soc. Am. 59, 1969).
+    """Return max |x| of an oscillator that is at rest at first [...], m, during and after the
+    record, by the exact response (Nigam & Jennings, Bull. Seism. Soc. Am. 59, 1969).
 
     With l = omega (-zeta + i sqrt(1 - zeta^2)) and w = x' - conj(l) x, x = Im w / Im l, and the
     oscillator x'' + 2 zeta omega x' + omega^2 x = -(a + b s) is w' = l w - a - b s:
 
         w(s) = (w(0) - p) exp(l s) + p + q s,    q = b / l,    p = (a + q) / l.
 
-    In an interval x is a straight line and a decaying oscillation: the largest |x| lies in its
-    first or last period, low by at most (2 pi / POINTS)^2 / 8 = 5e-6 of the oscillation. After the
-    record its first extreme is the largest.
+    In an interval x is a straight line plus a decaying oscillation: the largest |x| lies in its
+    first or last period, and is low by at most (2 pi / POINTS)^2 / 8 = 5e-6 of the oscillation.
+    After the record the first extreme is the largest.
 
     ground : [..., n] its acceleration, m/s2, dt (s) apart, zero after the last. omega : rad/s.
     """

@@ -1,4 +1,4 @@
-"""Recordings as results: what files and arrays of recorders hold, as the readings take it."""
+"""Recordings (files and arrays of recorders) as results, for the readings."""
 
 import re
 from collections.abc import Mapping
@@ -17,14 +17,14 @@ from jointwave.compare.misfit.places import spelled
 from jointwave.results.labels import RECEIVERS
 from jointwave.results.netcdf import is_netcdf, load_netcdf
 
-#: A result; a file; an array over `time`; or times (s) with values in SI [n] or [receiver, n], and
-#: the receivers' distances along a line (m) where these are known.
+#: A result; a file; an array over `time`; or times (s) with values in SI [n] or [receiver, n] and,
+#: if known, the receivers' distances along a line (m).
 Recording = xr.Dataset | xr.DataArray | str | PathLike[str] | tuple[Any, ...]
-#: What a recorder measures, by its unit.
+#: Quantities that a recorder's unit can identify.
 MEASURED = ("velocity", "acceleration", "displacement", "stress")
-#: As `Place`: a quantity, its direction, and its receiver's place or, where not known, its name.
+#: Quantity, direction, and the receiver's place or, if unknown, its name, as in `Place`.
 Where = tuple[str, str, tuple[float, ...] | str]
-#: Directions as recorders call them, and those across the vertical; 1 and 2 are SEED's, of HH1.
+#: Recorders' names of directions, and horizontal pairs; 1 and 2 are SEED's, as in HH1.
 DIRECTIONS = {
     **{"N": "n ns sn north", "E": "e ew we east", "Z": "z v ud up down vert vertical", "X": "x"},
     **{"R": "r rad radial", "T": "t tran trans transverse", "L": "l long longitudinal", "Y": "y"},
@@ -33,17 +33,17 @@ ACROSS = "NE XY RT LT 12"
 AXIS_OF = {word: axis for axis, words in DIRECTIONS.items() for word in words.split()}
 ENDING = rf"{'|'.join(AXIS_OF)}|(?<=[bdehms][hln])[12]"
 CHANNEL = re.compile(rf"((?:.*[\W_])?[a-z]{{0,2}})({ENDING})", re.IGNORECASE)
-MOST_SAMPLES = 4_000_000  # of an unevenly sampled recording at its smallest interval
+MOST_SAMPLES = 4_000_000  # of an uneven recording, resampled at its smallest interval
 
 
 def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
     """Return a recording as a result, SI: quantities over receivers, `time` and directions.
 
-    source : a file is one that `cases.records` or xarray reads; its columns are named as
-    `velocity_x@20 [mm/s]` or `acceleration@[20,30] [g]`, or by anything with a unit, where channels
+    source : a file must be readable by `cases.records` or xarray; its columns are named as
+    `velocity_x@20 [mm/s]` or `acceleration@[20,30] [g]`, or anything with a unit, where channels
     NS, EW, UP or HHN, HHE, HHZ are directions of one recorder; FILE:COLUMN or FILE:COLUMN=LABEL
-    selects one. quantity : of numbers without a label or unit. Uneven samples are
-    joined by straight lines. Raises SceneError, one line with what is wrong.
+    selects one. quantity : of numbers without a label or unit. Uneven samples are interpolated
+    linearly. Raises SceneError, one line with what is wrong.
     """
     if isinstance(source, xr.Dataset):
         return source
@@ -102,8 +102,8 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
 
 
 def _channels(names: list[str]) -> list[tuple[str, str]]:
-    """Return the direction and the recorder of channels named by directions across one another,
-    HHN and HHE, or Vel L and Vel T; of others no direction, and each for itself."""
+    """Return the direction and the recorder of channels whose names end in orthogonal directions
+    (HHN and HHE, or Vel L and Vel T); each other channel is its own recorder without direction."""
     matches = zip(map(CHANNEL.fullmatch, names), names, strict=True)
     found = [(AXIS_OF.get(m[2].lower(), m[2]), m[1]) if m else ("", name) for m, name in matches]
     for recorder in {one for _, one in found}:
@@ -114,15 +114,15 @@ def _channels(names: list[str]) -> list[tuple[str, str]]:
 
 
 def _measured(column: Column, quantity: str) -> str:
-    """Return what a column without a place holds, by its unit; else `quantity`."""
+    """Return the quantity of a column without a place from its unit, else `quantity`."""
     if not column.unit or column.unit in UNITS[quantity]:
         return quantity
     return next((one for one in MEASURED if column.unit in UNITS[one]), quantity)
 
 
 def dataset_of(time: np.ndarray, waves: Mapping[Any, np.ndarray]) -> xr.Dataset:
-    """Return waveforms [n], each by its `Where`, over a time [n], s, as a result at equal
-    intervals; raises ValueError."""
+    """Return waveforms [n], each by its `Where`, over times [n], s, as a result at equal intervals.
+    Raises ValueError."""
     quantities, axes, places = (list(dict.fromkeys(keys)) for keys in zip(*waves, strict=True))
     if len(waves) < len(quantities) * len(places) * len(axes):
         raise ValueError("must hold the same components at every receiver")
@@ -141,7 +141,7 @@ def dataset_of(time: np.ndarray, waves: Mapping[Any, np.ndarray]) -> xr.Dataset:
 
 
 def _even(result: xr.Dataset) -> xr.Dataset:
-    """Return a recording at equal intervals: itself, or straight lines at its smallest one."""
+    """Return a recording at equal intervals, resampled linearly at its smallest if uneven."""
     time = result["time"].values
     if len(time) < 2 or not (np.diff(time) > 0).all():
         raise SceneError("recording", "time", None, "must hold at least two times that increase")
@@ -167,7 +167,7 @@ def sampling(of: xr.DataArray | xr.Dataset) -> float:
 def variables(
     dims: str | tuple[str, ...], named: dict[str, tuple[np.ndarray, str, str]]
 ) -> dict[str, xr.Variable]:
-    """Return variables by name, of values, what they are in words, and their unit."""
+    """Return variables by name from values, long names and units."""
     return {
         name: xr.Variable(dims, values, {"long_name": words, "units": unit})
         for name, (values, words, unit) in named.items()

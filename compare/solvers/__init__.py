@@ -1,1 +1,1 @@
-"""The engines as entries of the registry, and the record that every solver has there."""
+"""The engines' entries in the registry, and the record type of all its solvers."""

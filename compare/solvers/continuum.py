@@ -1,4 +1,4 @@
-"""The continuum engine as two entries of the registry, one for each model of the rock."""
+"""The continuum engine's two entries in the registry, one for each model of the rock."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-#: How to get what the continuum runs on.
+#: How to install the continuum's libraries.
 INSTALL = 'pip install "jointwave[continuum]" (Linux, Python 3.12), or dolfinx by apt or conda'
 
 
 def applies(scene: AnyScene, model: str) -> Answer:
-    """Return whether dolfinx is there and the model holds for the scene."""
+    """Return whether dolfinx is installed and the model is valid for the scene."""
     try:
         from jointwave.continuum import applies as reason_against
     except ImportError as error:
@@ -29,7 +29,7 @@ def applies(scene: AnyScene, model: str) -> Answer:
 
 
 def run(scene: AnyScene, progress=None, comm=None, keeper=None, *, model: str) -> xr.Dataset:
-    """Return the result of a scene; comm : mpi4py's, of processes that share the run."""
+    """Return the result of a scene; comm : mpi4py's, of the processes that share the run."""
     from jointwave.continuum import simulate
 
     about: dict[str, Any] = {"progress": progress, "comm": comm, "keeper": keeper}
@@ -39,12 +39,12 @@ def run(scene: AnyScene, progress=None, comm=None, keeper=None, *, model: str) -
 
 
 def prepare(scene: AnyScene, model: str) -> Prepared:
-    """Return the step and the size of a run; raises SceneError as the run would."""
+    """Return the time step and the size of a run. Raises SceneError like the run."""
     from jointwave.continuum.plan import plan_of
 
     with estimates() as parts:
         plan = plan_of(scene, model)
-    incident(scene)  # which is not known of all waves in layers
+    incident(scene)  # raises SceneError if the field is unknown
     body, choice = plan.found.body, plan.choice
     settings = {
         "scheme": choice.scheme,

@@ -1,4 +1,4 @@
-"""The rigid-block engine as an entry of the registry."""
+"""The rigid-block engine's entry in the registry."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def run(scene: AnyScene, progress=None, comm=None, keeper=None) -> xr.Dataset:
-    """Return the result of a scene; `comm` is unused, one process runs it."""
+    """Return the result of a scene; `comm` is unused, as one process runs it."""
     from jointwave.dem import simulate
 
     found = simulate(scene, progress, keeper, incident(scene))
@@ -23,10 +23,10 @@ def run(scene: AnyScene, progress=None, comm=None, keeper=None) -> xr.Dataset:
 
 
 def prepare(scene: AnyScene) -> Prepared:
-    """Return the step and the size of a run; raises SceneError as the run would."""
+    """Return the time step and the size of a run. Raises SceneError like the run."""
     from jointwave.dem import plan
 
-    incident(scene)  # which is not known of all waves in layers
+    incident(scene)  # raises SceneError if the field is unknown
     with estimates() as parts:
         found = plan(scene)
     scheme = getattr(scene.numerics.dem, "scheme", "leapfrog")
@@ -36,7 +36,7 @@ def prepare(scene: AnyScene) -> Prepared:
 
 
 def applies(scene: AnyScene) -> Answer:
-    """Return whether a scene has blocks that can be rigid."""
+    """Return whether rigid blocks can represent a scene."""
     if scene.rock.quality_factor is not None:
         from jointwave.cases.schema.damping import NOT_OF_BLOCKS
 

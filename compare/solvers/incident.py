@@ -1,7 +1,7 @@
-"""The waves of a rock mass as an engine takes them: with all that is known of their joints.
+"""The incident field of a rock mass for the engines, with all known effects of its joints.
 
-All engines take the same, homogenised rock included: where joints are parallel its waves come from
-the intact rock in front of the joints, as theirs do, and the distance between them is their own.
+All engines use the same field, homogenised rock included: with parallel joints, waves come from the
+intact rock in front of them, so that distances between engines are their own.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def incident(scene: AnyScene) -> IncidentField | None:
-    """Return what enters a rock mass through its quiet sides; None for a scene without waves."""
+    """Return the field that enters a rock mass through its quiet sides; None without waves."""
     if not scene.waves:
         return None
     from jointwave.compare.exact.rock_mass.field import field_of
@@ -25,7 +25,7 @@ def incident(scene: AnyScene) -> IncidentField | None:
 
 
 def side_warnings(scene: AnyScene) -> list[str]:
-    """Return the errors of the quiet sides of a rock mass that its receivers feel, a line each."""
+    """Return the errors of a rock mass's quiet sides that receivers feel, one line each."""
     if scene.is_column or not scene.boundaries.sides("quiet"):
         return []
     from jointwave.compare.exact.rock_mass.side_error import beside_loads, side_error
@@ -35,6 +35,6 @@ def side_warnings(scene: AnyScene) -> list[str]:
 
 
 def note_sides(attributes: dict[str, Any], scene: AnyScene) -> None:
-    """Add those lines to the warnings that a result bears."""
+    """Add the warnings about quiet sides to those of a result."""
     if lines := side_warnings(scene):
         attributes["warnings"] = json.dumps([*json.loads(attributes["warnings"]), *lines])

@@ -1,8 +1,9 @@
-"""The block or element that limits the explicit step of an engine, and what lifting it takes.
+"""The block or element that limits the explicit time step of an engine, and the cost of relieving
+it.
 
-Every freedom i bounds the square of the highest frequency by sum |K_ij| / m_i (Gershgorin), and
-every rigid block of a rock mass by the stiffness against what it touches. A part that is stiff for
-its mass stands out; more mass on it lifts it.
+The sum |K_ij| / m_i of degree of freedom i bounds the square of the highest frequency (Gershgorin),
+and so does a rigid block's contact stiffness over its mass. A part that is stiff for its mass
+stands out; added mass relieves it.
 """
 
 from typing import Any
@@ -12,16 +13,16 @@ import numpy as np
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.solvers.dem import DEM
 
-MOST = 0.05  # of all parts: those that are lifted
-ALIKE = 1.1  # a gain in the step below which nothing stands out
+MOST = 0.05  # share of parts that are relieved
+ALIKE = 1.1  # gain in the time step below which nothing stands out
 
 
 def limiting(name: str, model: str | None, scene: AnyScene) -> dict[str, Any] | None:
-    """Return what limits an engine's explicit step on a scene, None if its parts are much alike.
+    """Return what limits an engine's explicit step on a scene; None if its parts are similar.
 
-    at : its place, m. size : m, of a block the root of its area, of an element its shortest edge.
-    longer_step : by how much the step grows where the twentieth of the parts that bounds it most is
-    lifted to the next one. mass_added : what that adds to the whole mass, relative.
+    at : place, m. size : m, of a block the root of its area, of an element its shortest edge.
+    longer_step : gain in the step if the most limiting twentieth of the parts is raised to the next
+    one. mass_added : by that, relative to the whole mass.
     """
     square, mass, place, size = (_blocks if name == DEM.name else _elements)(scene, model)
     order = np.argsort(square)
@@ -35,7 +36,7 @@ def limiting(name: str, model: str | None, scene: AnyScene) -> dict[str, Any] | 
 
 
 def _blocks(scene: AnyScene, model: Any) -> tuple:
-    """Return the squared frequencies (1/s2), masses and places of rigid blocks, and their sizes."""
+    """Return the squared frequencies (1/s2), masses, places and sizes of rigid blocks."""
     from jointwave.dem.contacts.stability import squared_frequencies
     from jointwave.dem.prepare import blocks_of
 
@@ -45,7 +46,7 @@ def _blocks(scene: AnyScene, model: Any) -> tuple:
 
 
 def _elements(scene: AnyScene, model: Any) -> tuple:
-    """Return the same of the nodes of deformable rock with their shortest edges."""
+    """Return the same for the nodes of deformable rock, with their shortest edges."""
     from jointwave.continuum.plan import plan_of
     from jointwave.continuum.space.compat import cell_corners
     from jointwave.continuum.space.evaluation import nodes_of_cells

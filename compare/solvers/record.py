@@ -1,4 +1,4 @@
-"""The record of a solver: what the registry knows of an engine or of an exact solution."""
+"""The record of a solver: what the registry knows of an engine or an exact solution."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-OF_BLOCK_IN_PLANE = 3  # freedoms of a rigid block of a rock mass ...
+OF_BLOCK_IN_PLANE = 3  # degrees of freedom of a rigid block of a rock mass ...
 OF_BLOCK_IN_SPACE = 6  # ... and in space
 
 
@@ -28,14 +28,14 @@ class Rock(IntEnum):
 
     @property
     def words(self) -> str:
-        """The rock in words."""
+        """The rock as text."""
         joints = "with every joint"
         blocks, rock = f"rigid blocks {joints}", f"deformable rock {joints}"
         return ("one rigid body", "homogenised rock", blocks, rock)[self - 1]
 
 
 class Form(IntEnum):
-    """A solution is an engine's run, computed with a bound of its own error, or a formula."""
+    """Source of a solution: an engine's run, a computation with an error bound, or a formula."""
 
     RUN = 1
     COMPUTED = 2
@@ -51,12 +51,12 @@ class Kind(IntEnum):
 
     @property
     def words(self) -> str:
-        """The meaning in words."""
+        """The meaning as text."""
         return ("numerical error", "modelling error", "between engines")[self - 1]
 
 
 class Answer(NamedTuple):
-    """Yes, or the reason why not; true where the solver holds."""
+    """Yes, or the reason why not; true if there is no reason."""
 
     reason: str = ""
 
@@ -65,17 +65,17 @@ class Answer(NamedTuple):
 
     @classmethod
     def unless(cls, *against: tuple[object, str]) -> Answer:
-        """Return yes, or of the conditions that are met the reason beside the first."""
+        """Return yes, or the reason of the first condition that is true."""
         return cls(next((why for there, why in against if there), ""))
 
 
-LINE = 1.5  # points, of a line whose width is 1.5
-PERIOD = 18.0  # of the dash patterns of exact solutions, in line widths
+LINE = 1.5  # matplotlib's default line width, points
+PERIOD = 18.0  # period of the dash patterns of exact solutions, in line widths
 
 
 class Line(NamedTuple):
-    """A curve: colour, width in points, its order, the largest on top, the pattern of its dashes in
-    line widths, and the marker of its samples, if any."""
+    """A curve: colour, width in points, order (the largest on top), dash pattern in line widths,
+    and marker of its samples, if any."""
 
     colour: str
     width: float
@@ -100,10 +100,10 @@ class Line(NamedTuple):
 
 
 def thin(colour: str, order: int, slot: tuple[float, float]) -> Line:
-    """Return the line of an exact solution: thin and dashed, over those of the engines.
+    """Return the line of an exact solution: thin and dashed, above those of the engines.
 
-    slot : the part of each period of dashes that it fills: where all solutions coincide, their
-    dashes alternate.
+    slot : the part of each dash period that it fills, so that dashes of coinciding solutions
+    alternate.
     """
     first, last = slot
     return Line(colour, 1.1, order, (PERIOD - first, (last - first, PERIOD - (last - first))))
@@ -112,9 +112,9 @@ def thin(colour: str, order: int, slot: tuple[float, float]) -> Line:
 class Prepared(NamedTuple):
     """A run before its first step.
 
-    scheme : of time steps. steps : their number, 0 without any. dt, critical : the step and the
-    critical step of explicit ones, s. freedoms : of the blocks or the rock. bytes : of memory, of
-    solutions without steps the least, their waveforms. settings : what decides the cost of a step.
+    scheme : of time stepping. steps : their number, 0 without any. dt, critical : time step, and
+    critical step of explicit schemes, s. freedoms : of blocks or rock. bytes : of memory; for exact
+    solutions at least, their waveforms. settings : that set the cost of a step.
     """
 
     scheme: str
@@ -133,29 +133,28 @@ def without_steps(scene: AnyScene) -> Prepared:
 
 @dataclass(frozen=True)
 class Solver:
-    """An engine or an exact solution: what it resolves, its names and its line, and its functions.
+    """An engine or an exact solution: its model, names, line style and functions.
 
     Attributes
     ----------
-    rock, form : how it resolves the rock mass, and how its solution is known.
-    label : in a legend, beside its name. sentence : of an engine, how its sentence in
-        the lead of the report begins.
+    rock, form : how it resolves the rock mass, and how its solution is obtained.
+    label : in legends, besides its name. sentence : start of an engine's sentence in the report's
+        lead.
     kinds : of scenes that it can solve: "pillar", "rock mass".
-    dimension : 1 where it has no motion across the axis beside a plane wave.
+    dimension : 1 if it has no motion across the axis except a plane wave.
     in_space : whether it solves rock masses in space.
-    discretised : whether an engine discretises this very model; a solution of one mechanism alone
-        leaves out what else the engines have.
-    applies : of (scene), one of its kinds, to whether it holds for it.
-    run : of (scene), to its result; of an engine of (scene, progress, comm, keeper).
-    prepare : of (scene), to what is known before a run; raises SceneError as the run would.
-    distances : by kind, the solvers whose distance from this one is measured, and what each is
-        made of.
-    engine, model : as --engine and --model select it; `engine` of the engines is also their table
-        of [numerics].
-    schemes : of time steps. per_block : whether a step's cost is counted in blocks, else in
-        freedoms. cost : the settings of a run that decide what a step costs.
+    discretised : whether an engine discretises this very model; False for solutions of a single
+        mechanism, which leave out other effects of the engines.
+    applies : of (scene), one of its kinds; returns whether it applies.
+    run : of (scene), returns the result; for engines of (scene, progress, comm, keeper).
+    prepare : of (scene), returns what is known before a run; raises SceneError like the run.
+    distances : by kind, the solvers whose distance from this one is measured, with its causes.
+    engine, model : as selected by --engine and --model; an engine's `engine` is also its table in
+        [numerics].
+    schemes : of time stepping. per_block : whether a step's cost is counted per block, else per
+        degree of freedom. cost : the settings that set the cost of a step.
     shares : whether several processes can share a run.
-    libraries : the versions that decide the bits of a result, beside those of numpy and numba.
+    libraries : versions that affect the bits of a result, besides those of numpy and numba.
     """
 
     name: str
@@ -192,11 +191,11 @@ class Solver:
 
     @property
     def unit(self) -> str:
-        """What the cost of its steps is counted in."""
+        """The unit in which the cost of its steps is counted."""
         return "blocks" if self.per_block else "freedoms"
 
     def units(self, scene: AnyScene, freedoms: int) -> int:
-        """Return how many of them a run has."""
+        """Return the number of these units in a run."""
         if not self.per_block:
             return freedoms
         if scene.is_column:

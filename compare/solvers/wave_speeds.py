@@ -1,4 +1,4 @@
-"""The speeds of the waves in each engine's model of a rock mass."""
+"""Wave speeds in each engine's model of a rock mass."""
 
 import numpy as np
 
@@ -11,16 +11,16 @@ from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.solvers.record import Rock
 
-RIGID = 1e3  #: times the speed of intact rock: no strain at all
+RIGID = 1e3  #: ratio to the speed in intact rock above which nothing deforms
 
-#: Speeds of P and S waves, m/s, by what has them; infinite where nothing deforms.
+#: Speeds of P and S waves, m/s, by medium and axis; infinite where nothing deforms.
 Speeds = dict[str, tuple[float, float]]
 
 
 def speeds(scene: RockMass, resolved: Rock) -> Speeds:
-    """Return the speeds of waves in the rock of no region as an engine resolves it.
+    """Return wave speeds outside all regions of rock, as an engine resolves it.
 
-    Long waves are those of wavelengths that are large against the blocks.
+    Long waves have wavelengths that are large compared with the blocks.
     """
     if resolved is Rock.RIGID_BLOCKS:
         return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
@@ -34,8 +34,8 @@ def speeds(scene: RockMass, resolved: Rock) -> Speeds:
 
 
 def _along_axes(medium: np.ndarray, scene: RockMass) -> Speeds:
-    """Return the speeds of a medium's long waves along the axes: of P, that of the shape which
-    moves most along the axis, and of S, in space the slowest."""
+    """Return the speeds of a medium's long waves along the axes: P has the polarisation nearest to
+    the axis, S is the slowest of the others."""
     dim = scene.domain.dimension
     found, shapes = speeds_of_medium(medium, scene.rock.density, np.eye(dim))
     found[found > RIGID * float(elastic_rock(scene.rock).p_speed)] = np.inf
