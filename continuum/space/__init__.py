@@ -1,1 +1,1 @@
-"""dolfinx spaces on open meshes, rock as UFL forms, and the jump operator of joints."""
+"""dolfinx spaces on meshes cut along joints, rock as UFL forms, and the jump operator of joints."""

@@ -1,8 +1,8 @@
-"""Triangles and tetrahedra of order 2 whose mass is diagonal: with bubbles on faces and within.
+"""Triangles and tetrahedra of order 2 with bubbles, for a diagonal mass matrix.
 
-Sums of rows of the mass of the functions of order 2 are zero or negative. With lambda_i lambda_j
-lambda_k of each face, and in space the product of all four, the triangle has 7 nodes and the
-tetrahedron 15, at corners and the middles of edges, faces and cell, and sums of rows are positive
+The row sums of the plain order-2 mass matrix are zero or negative. With the bubbles lambda_i
+lambda_j lambda_k of each face, and in space the product of all four, the triangle has 7 nodes and
+the tetrahedron 15, at corners and the middles of edges, faces and cell, and row sums are positive
 (Cohen, Joly, Roberts & Tordjman, SIAM J. Numer. Anal. 38, 2001; Geevers, Mulder & van der Vegt,
 SIAM J. Sci. Comput. 40, 2018).
 """
@@ -21,7 +21,7 @@ DEGREE = {"triangle": 3, "tetrahedron": 4}  # of the highest bubble
 
 @cache
 def bubble_element(kind: str) -> Any:
-    """Return basix's element of order 2 with bubbles, one function a node."""
+    """Return the basix element of order 2 with bubbles, one function a node."""
     cell, degree = getattr(basix.CellType, kind), DEGREE[kind]
     corners = np.asarray(basix.geometry(cell))
     at, weight = quadrature(kind, 2 * degree)

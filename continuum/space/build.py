@@ -1,4 +1,4 @@
-"""A body from a conforming mesh of blocks: nodes of their own along joints, rock and joints."""
+"""A body from a conforming mesh of blocks: doubled nodes along joints, rock and jump operator."""
 
 import logging
 from collections.abc import Sequence
@@ -33,15 +33,15 @@ from jointwave.continuum.space.model import (
 from jointwave.continuum.space.traces import Trace, reference_cell, trace
 
 log = logging.getLogger("jointwave")
-ROUND_OFF = 1e-14  # of entries, relative
-LEVEL = 1e-9  # of the pillar: nodes at one height
+ROUND_OFF = 1e-14  # of matrix entries, relative
+LEVEL = 1e-9  # difference, over the length of the pillar, of nodes at the same y
 
 
 class Elements:
-    """A dolfinx space on a mesh of blocks that is open along its joints; rock makes it a body.
+    """A dolfinx space on a mesh of blocks cut along its joints; `body` adds the rock.
 
-    space : of displacements. block : int array [cells of dolfinx]. nodes : of the body, of the
-    mesh's cells [cells, n]. x : [nodes of the space, d], m. tied : as `Body` has it.
+    space : of displacements. block : of dolfinx's cells [cells]. nodes : of the body, in the order
+    of `Conforming.cells` [cells, n]. x : nodes of the space [n, d], m. tied : as in `Body`.
     """
 
     def __init__(
@@ -53,9 +53,8 @@ class Elements:
         across: Sequence[Facing] = (),
         flat: bool = False,
     ) -> None:
-        """components : of displacements; as many as dimensions where absent. across : what periodic
-        sides face, with columns of their own. flat : whether sections across y of each piece of
-        rock move as a whole."""
+        """components : of displacements; absent: the dimension. across : facets across periodic
+        sides. flat : whether nodes of a piece of rock at the same y move together."""
         self.mesh, self.marks, self.across, kind = mesh, marks, across, mesh.kind
         self.size, self.corners = components or mesh.x.shape[1], mesh.x[mesh.cells]
         pairs = shared(mesh)
@@ -80,8 +79,8 @@ class Elements:
             self.nodes = self.tied[self.nodes]
 
     def _tied(self, flat: bool) -> np.ndarray | None:
-        """Return the node that each counts as: of rock that is whole across periodic sides, and of
-        each piece of rock at one y where it is flat."""
+        """Return the representative of each node [nodes] among tied nodes, those of intact rock
+        across periodic sides or of flat sections; None without tied nodes."""
         count, x = len(self.x), self.x
         if flat:
             cell = np.repeat(self.nodes[:, :1], self.nodes.shape[1], axis=1)
@@ -98,16 +97,16 @@ class Elements:
         return joined(np.concatenate(sides), count) if sides else None
 
     def _trace(self, facets: Places, vertices: np.ndarray | None = None) -> Trace:
-        """Return the nodes of facets; vertices : that decide their order, of the mesh."""
+        """Return the nodes of facets; vertices : numbers that define the order [v]."""
         own = self.mesh.cells if vertices is None else vertices[self.mesh.cells]
         return trace(self.cell, self.nodes, own, self.corners, facets)
 
     def _both(self, pairs: Places, vertices: np.ndarray | None = None) -> tuple[Trace, Trace]:
-        """Return the nodes of facets i and of those that they face, j."""
+        """Return the nodes of facets of blocks i and of their partners, of blocks j."""
         return self._trace(pairs.side(0), vertices), self._trace(pairs.side(1), vertices)
 
     def body(self, rock: Forms) -> Body:
-        """Return the body of rock on the space."""
+        """Return the body with this rock."""
         x, forms = self.x, assembled(rock, self.cell.kind, self.cell.order)
         if self.tied is not None:
             own = (self.size * self.tied[:, None] + np.arange(self.size)).ravel()
@@ -154,7 +153,7 @@ class Elements:
         return jump_operator(i, j, np.concatenate([one[2] for one in parts]), self.size)
 
     def _sides(self) -> dict[str, Facets]:
-        """Return the facets of each side that there is."""
+        """Return the facets of each existing side."""
         outer, sides = _marked(self.marks.side, self.mesh.on), {}
         for k, name in enumerate(self.marks.names):
             facets = Places(*np.nonzero(outer == k))
@@ -171,13 +170,13 @@ class Elements:
 
 
 def _marked(marks: np.ndarray, facet: np.ndarray) -> np.ndarray:
-    """Return the marks of facets of the complex, -1 of none."""
+    """Return the marks of facets of the complex, -1 for facet -1."""
     return np.append(marks, -1)[facet]
 
 
 def assembled(forms: Forms, kind: str, order: int) -> list[Any]:
-    """Return the matrices of mass, stiffness and damping (without entries where there is none),
-    assembled by dolfinx."""
+    """Return the matrices of mass, stiffness and damping (without entries if absent), assembled by
+    dolfinx."""
     rules = nodal_rule(kind, order), rock_rule(kind, order), rock_rule(kind, order)
     both = [one for one in zip(forms, rules, strict=True) if one[0] is not None]
     found = [without_round_off(matrix(by_rule(*one))) for one in both]
@@ -185,10 +184,8 @@ def assembled(forms: Forms, kind: str, order: int) -> list[Any]:
 
 
 def without_round_off(matrix: csr_matrix) -> csr_matrix:
-    """Return a symmetric positive semidefinite matrix without entries that are only round-off.
-
-    No entry exceeds the geometric mean of its two diagonal ones; against that they are measured.
-    """
+    """Return a symmetric positive semidefinite matrix without entries of round-off, relative to the
+    geometric mean of the two diagonal entries, which bounds every entry."""
     scale, entries = np.sqrt(np.abs(matrix.diagonal())), matrix.tocoo()
     real = np.abs(entries.data) > ROUND_OFF * scale[entries.row] * scale[entries.col]
     places = entries.row[real], entries.col[real]
@@ -196,24 +193,23 @@ def without_round_off(matrix: csr_matrix) -> csr_matrix:
 
 
 def rock_rule(kind: str, order: int) -> dict[str, Any]:
-    """Return the metadata of UFL's measure for stiffness and damping."""
+    """Return the UFL metadata of integrals for stiffness and damping."""
     exact = kind in SIMPLEX or (kind, order) == ("hexahedron", 1)
     return {} if exact else nodal_rule(kind, order)
 
 
 def nodal_rule(kind: str, order: int) -> dict[str, Any]:
-    """Return the metadata of UFL's measure by which the mass is diagonal; none where sums of rows
-    make it so."""
+    """Return the UFL metadata of integrals for a diagonal mass; none where row sums are used."""
     if kind not in SIMPLEX:
         return {"quadrature_rule": "GLL", "quadrature_degree": max(2 * order - 1, 1)}
     return {"quadrature_rule": "vertex", "quadrature_degree": 1} if order == 1 else {}
 
 
 def by_rule(form: ufl.Form, rule: dict[str, Any]) -> ufl.Form:
-    """Return a form with this metadata in its integrals that state no rule of quadrature.
+    """Return a form with this metadata in integrals that state no quadrature rule.
 
-    Functions of place keep UFL's own, whose points are inside cells: at nodes of faces a modulus
-    that jumps there would be that of one side.
+    Integrals of functions of place keep UFL's default, with points inside cells: at nodes on faces,
+    a modulus that jumps there would have the value of one side.
     """
     integrals = []
     for one in form.integrals():

@@ -1,4 +1,4 @@
-"""Differences between dolfinx 0.5 and 0.11, told apart by what they offer."""
+"""Differences between dolfinx 0.5 and 0.11, detected by their attributes."""
 
 import inspect
 import os
@@ -15,7 +15,7 @@ from jointwave.continuum.space.compiling import compiled
 from jointwave.continuum.space.fenicsx import MPI, dolfinx
 
 fem, mesh = dolfinx.fem, dolfinx.mesh
-NEW = hasattr(basix, "ufl")  #: whether elements of basix are UFL's
+NEW = hasattr(basix, "ufl")  #: whether basix's elements are UFL elements
 function_space = fem.functionspace if hasattr(fem, "functionspace") else fem.FunctionSpace
 if not NEW:
     import basix.ufl_wrapper
@@ -24,12 +24,12 @@ if not NEW:
 def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray) -> Any:
     """Return the dolfinx mesh of cells [n, corners] between vertices x [m, d], m.
 
-    Cells that share no vertex are not connected, wherever their vertices lie.
+    Cells without a common vertex number are not connected, even if vertices coincide.
     """
     dim = x.shape[1]
     if NEW:
         element = basix.ufl.element("Lagrange", kind, 1, shape=(dim,))
-    else:  # of another variant ffcx rewrites the element, and compiles forms again in later runs
+    else:  # for other variants ffcx rewrites the element and compiles forms again in later runs
         cell = ufl.Cell(kind, geometric_dimension=dim)
         element = ufl.VectorElement("Lagrange", cell, 1, variant="equispaced")
     name = "e" if "e" in inspect.signature(mesh.create_mesh).parameters else "domain"
@@ -38,12 +38,12 @@ def make_mesh(kind: str, x: np.ndarray, cells: np.ndarray) -> Any:
 
 
 def input_cells(domain: Any) -> np.ndarray:
-    """Return for each cell of a mesh its row in the array of cells that it was made from."""
+    """Return the row of each cell of a mesh in the array of cells from which it was made."""
     return np.asarray(domain.topology.original_cell_index)
 
 
 def lagrange(domain: Any, order: int, components: int) -> Any:
-    """Return the space of vectors of Lagrange elements of this order.
+    """Return the vector space of Lagrange elements of this order.
 
     On intervals, quadrilaterals and hexahedra its nodes are Gauss-Lobatto-Legendre points.
     """
@@ -51,7 +51,7 @@ def lagrange(domain: Any, order: int, components: int) -> Any:
 
 
 def vector_space(domain: Any, element: Any, components: int) -> Any:
-    """Return the space of vectors with one of basix's elements, of scalars, for each component."""
+    """Return the vector space with a scalar basix element for each component."""
     if NEW:
         whole = basix.ufl.blocked_element(basix.ufl.wrap_element(element), shape=(components,))
     else:
@@ -61,10 +61,10 @@ def vector_space(domain: Any, element: Any, components: int) -> Any:
 
 
 def custom_element(kind: str, span: np.ndarray, points: list, complete: int, degree: int) -> Any:
-    """Return basix's element of functions that are given by their values at points.
+    """Return the basix element whose degrees of freedom are values at points.
 
-    span : float array [n, m], of orthonormal polynomials up to `degree`. points : for each entity
-    of each dimension its points [k, d]. complete : the highest degree that is there completely.
+    span : functions in orthonormal polynomials up to `degree` [n, m]. points : of each entity of
+    each dimension [k, d]. complete : highest degree of which all polynomials are in the span.
     """
     cell, dim = getattr(basix.CellType, kind), points[0][0].shape[1]
     x = [*points, *[[]] * (3 - dim)]
@@ -78,25 +78,25 @@ def custom_element(kind: str, span: np.ndarray, points: list, complete: int, deg
 
 
 def cell_constants(domain: Any, values: np.ndarray) -> Any:
-    """Return the vector function that has values [cells, n] in the cells of a mesh."""
+    """Return the vector function with values [cells, n] in the cells of a mesh."""
     found = fem.Function(_space(domain, "DG", 0, values.shape[1]), dtype=np.float64)
     found.x.array[:] = values.ravel()
     return found
 
 
 def of_cells(domain: Any) -> Any:
-    """Return the space of scalars that are constant in each cell."""
+    """Return the space of scalars constant in each cell."""
     return compiled(lambda: function_space(domain, ("DG", 0)))
 
 
 def constant(domain: Any, shape: tuple[int, ...], value: float = 0.0) -> Any:
-    """Return a constant of UFL on a mesh, whose `value` can be changed."""
+    """Return a UFL constant on a mesh, with a mutable `value`."""
     return fem.Constant(domain, np.full(shape, value))
 
 
 def cell_sums(domain: Any, form: ufl.Form) -> Callable[[], np.ndarray]:
-    """Return a function that integrates a form without arguments over each cell, float array
-    [cells], with the constants that it has then."""
+    """Return a function that integrates a form without arguments over each cell [cells], with the
+    values of its constants at the call."""
     one = ufl.TestFunction(_space(domain, "DG", 0, 1))[0]
     each = [part.reconstruct(integrand=part.integrand() * one) for part in form.integrals()]
     made = compiled(lambda: fem.form(ufl.Form(each), dtype=np.float64))
@@ -110,7 +110,7 @@ def _space(domain: Any, family: str, order: int, size: int) -> Any:
 
 
 def neighbours(domain: Any) -> np.ndarray:
-    """Return the pairs of cells of a mesh that share a facet, int array [2, n]."""
+    """Return the pairs of cells of a mesh that share a facet [2, n]."""
     topology, dim = domain.topology, domain.topology.dim
     topology.create_entities(dim - 1)
     topology.create_connectivity(dim - 1, dim)
@@ -120,21 +120,21 @@ def neighbours(domain: Any) -> np.ndarray:
 
 
 def parts_of_graph(start: np.ndarray, column: np.ndarray, parts: int) -> np.ndarray:
-    """Return the part, 0 .. parts - 1, of each vertex of a graph, int array; parts have about as
-    many vertices and few edges between them. start, column : of its edges, each both ways, CSR."""
+    """Partition a graph into parts of about equal size with few edges between them; return the
+    part of each vertex. start, column : edges in both directions, CSR."""
     graph, none = dolfinx.graph, np.zeros(0, np.int32)
-    os.environ.setdefault("SCOTCH_PTHREAD_NUMBER", "1")  # its threads' race decides the parts
+    os.environ.setdefault("SCOTCH_PTHREAD_NUMBER", "1")  # threads give random partitions
     made = graph.adjacencylist if hasattr(graph, "adjacencylist") else graph.create_adjacencylist
     edges, divide = made(column.astype(np.int64), start.astype(np.int32)), graph.partitioner()
     given = MPI.COMM_SELF, parts, getattr(edges, "_cpp_object", edges)
     try:
         return np.array(divide(*given, False).array)
-    except TypeError:  # newer: with weights of vertices and edges
+    except TypeError:  # newer versions also take weights of vertices and edges
         return np.array(divide(*given, none, none, False).array)
 
 
 def cell_nodes(space: Any) -> np.ndarray:
-    """Return the nodes of each cell of the mesh, int array [cells, nodes per cell]."""
+    """Return the nodes of each cell of the mesh [cells, nodes per cell]."""
     nodes = space.dofmap.list
     table = np.asarray(getattr(nodes, "array", nodes))
     return table.reshape(len(input_cells(space.mesh)), -1)
@@ -157,20 +157,19 @@ def quadrature(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
     rule = types.default if hasattr(types, "default") else types.Default
     try:
         return basix.make_quadrature(cell, degree, rule=rule)
-    except TypeError:  # older: the rule comes first, and nothing has a name
+    except TypeError:  # older versions take the rule first, without keywords
         return basix.make_quadrature(rule, cell, degree)
 
 
 @cache
 def reference(kind: str, order: int) -> Any:
-    """Return basix's Lagrange element of a cell; `points` are its nodes, one for each function."""
+    """Return the basix Lagrange element of a cell; its `points` are the nodes."""
     family, variant = basix.ElementFamily.P, basix.LagrangeVariant.gll_warped
     return basix.create_element(family, getattr(basix.CellType, kind), order, variant)
 
 
 def cell_corners(domain: Any) -> np.ndarray:
-    """Return the corners of each cell of a mesh of straight cells, float array [cells, corners, d],
-    m."""
+    """Return the corners of each cell of a mesh of straight cells [cells, corners, d], m."""
     geometry = domain.geometry
     table = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
     table = np.asarray(getattr(table, "array", table)).reshape(len(input_cells(domain)), -1)

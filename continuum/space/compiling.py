@@ -1,4 +1,4 @@
-"""Forms, and in old versions elements, that dolfinx compiles by a C compiler."""
+"""Compilation of dolfinx's forms, and in old versions elements, with a C compiler."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -15,20 +15,21 @@ from jointwave.numerics.cache import one_process
 
 Made = TypeVar("Made")
 LINE = "dolfinx compiles the elements and forms of the rock; later runs load them"
-WAIT = 0.5  # s, after which compiling is announced: what is cached loads in less
-FAILED = 10.0  # s without an end, after which dolfinx takes a compilation for failed
+WAIT = 0.5  # s, after which compiling is announced: cached forms load in less
+FAILED = 10.0  # s, after which dolfinx treats an unfinished compilation as failed
 INSTALL = "apt install gcc python3-dev, or conda install c-compiler"
 
 
 def compiled(make: Callable[[], Made]) -> Made:
-    """Return what a call of dolfinx makes, one process at a time, and say so once it takes a while.
+    """Return the result of a dolfinx call that may compile, one process at a time, and announce it
+    after `WAIT`.
 
-    Raises ImportError, with the way to install it, where the compiler is not there or fails.
+    Raises ImportError, with installation instructions, if the compiler is missing or fails.
     """
     with _quiet(), one_process(_cache() / "jointwave.lock", WAIT, announce):
         try:
             return make()
-        except TimeoutError:  # a run that was killed left its source
+        except TimeoutError:  # a killed run has left its source
             _forget_unfinished()
             return make()
         except cffi.VerificationError:
@@ -37,7 +38,7 @@ def compiled(make: Callable[[], Made]) -> Made:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Hide the progress of the compilers, and restore the root logger that they change."""
+    """Hide the compilers' messages, and restore the root logger, which they change."""
     root, disabled = logging.getLogger(), logging.root.manager.disable
     handlers, level = list(root.handlers), root.level
     logging.disable(max(disabled, logging.INFO))
@@ -51,7 +52,7 @@ def _quiet() -> Iterator[None]:
 
 @cache
 def announce() -> None:
-    """Log once that compiling takes a while, though others' messages are hidden."""
+    """Log once that compiling takes a while, even while `_quiet` hides messages."""
     log = logging.getLogger("jointwave")
     if log.getEffectiveLevel() <= logging.INFO:
         log.handle(log.makeRecord(log.name, logging.INFO, __file__, 0, LINE, (), None))
@@ -63,7 +64,7 @@ def _cache() -> Path:
 
 
 def _forget_unfinished() -> None:
-    """Remove sources whose compilation never ended."""
+    """Remove sources of unfinished compilations."""
     for source in _cache().glob("libffcx_*.c"):
         with suppress(OSError):
             old = time() - source.stat().st_mtime > FAILED

@@ -1,4 +1,4 @@
-"""The motion of a body and its gradient at points: rows of matrices on its freedoms."""
+"""Evaluation of a body's motion and its gradient at points, as matrix rows on its freedoms."""
 
 from typing import Any, NamedTuple
 
@@ -8,17 +8,17 @@ from scipy.sparse import csr_matrix
 from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Body
 
-INSIDE = 1e-7  # of the reference cell: how far outside it a point on its face may come out
-CLOSE = 1e-12  # of the reference cell: when Newton's iteration has found a point
+INSIDE = 1e-7  # distance outside the reference cell at which a point is on its face
+CLOSE = 1e-12  # convergence of Newton's iteration in reference coordinates
 ROUNDS = 20
-NOTHING = 1e-11  # a basis function that is zero but for round-off
+NOTHING = 1e-11  # value of a basis function that counts as zero
 
 
 class Places(NamedTuple):
-    """Points in cells; a point on several cells is in each.
+    """Points in cells; a point on several cells appears once for each.
 
-    point, cell : int arrays [n]. local : in the reference cell [n, d]. basis : float array [n,
-    nodes of a cell]. gradient : [n, nodes, d], 1/m.
+    point, cell : numbers [n]. local : reference coordinates [n, d]. basis : functions of the nodes
+    [n, nodes of a cell]. gradient : of these [n, nodes, d], 1/m.
     """
 
     point: np.ndarray
@@ -29,13 +29,13 @@ class Places(NamedTuple):
 
 
 def nodes_of_cells(body: Body) -> np.ndarray:
-    """Return the nodes of the body in each cell, int array [cells, nodes of a cell]."""
+    """Return the nodes of the body in each cell [cells, nodes of a cell]."""
     nodes = compat.cell_nodes(body.space)
     return nodes if body.tied is None else body.tied[nodes]
 
 
 def blocks_of_nodes(body: Body) -> np.ndarray:
-    """Return the block of each node, int array; of nodes that several share one of them."""
+    """Return the block of each node [nodes], any one for a node of several blocks."""
     if body.space is None:
         return body.block
     found = np.zeros(len(body.x), dtype=np.int64)
@@ -49,9 +49,9 @@ def places_of_nodes(body: Body) -> np.ndarray:
 
 
 def tabulate(element: Any, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the functions [n, nodes] of an element of basix and their gradients [n, nodes, d] at
+    """Return the functions [n, nodes] of a basix element and their gradients [n, nodes, d] at
     points [n, d] of the reference cell."""
-    if not len(at):  # an assertion of basix stops the process
+    if not len(at):  # basix would abort the process by an assertion
         nodes = len(element.points)
         return np.zeros((0, nodes)), np.zeros((0, nodes, at.shape[1]))
     table = element.tabulate(1, at)[..., 0]
@@ -59,7 +59,7 @@ def tabulate(element: Any, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def at_reference(body: Body, point: np.ndarray, cell: np.ndarray, at: np.ndarray) -> Places:
-    """Return points that are given in reference coordinates [n, d] of cells [n]."""
+    """Return `Places` of points given in reference coordinates [n, d] of cells [n]."""
     basis, gradient = tabulate(body.cell.element, at)
     corners = compat.cell_corners(body.mesh)[cell]
     inverse = np.linalg.inv(jacobians(body.cell.kind, corners, at))
@@ -74,8 +74,8 @@ def jacobians(kind: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def reference_points(kind: str, corners: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return reference coordinates [n, d] of points [n, d] in cells; Newton, one step where
-    affine."""
+    """Return reference coordinates [n, d] of points [n, d] in cells, by Newton's method (one step
+    in affine cells)."""
     at, flat = np.full_like(x, 0.3), compat.reference(kind, 1)
     for _ in range(ROUNDS):
         missing = x - np.einsum("nv,nvd->nd", tabulate(flat, at)[0], corners)
@@ -87,7 +87,7 @@ def reference_points(kind: str, corners: np.ndarray, x: np.ndarray) -> np.ndarra
 
 
 def places_in(body: Body, x: np.ndarray) -> Places:
-    """Return points [m, d], m, in all cells that they are in or on."""
+    """Return `Places` of points [m, d], m, in all cells that contain them."""
     corners, kind = compat.cell_corners(body.mesh), body.cell.kind
     low, high = corners.min(axis=1), corners.max(axis=1)
     slack = INSIDE * float((high - low).max(initial=0.0))
@@ -104,8 +104,8 @@ def places_in(body: Body, x: np.ndarray) -> Places:
 
 
 def matrix_of(body: Body, row: np.ndarray, cell: np.ndarray, weights: np.ndarray, count: int):
-    """Return the matrix [count * r, freedoms] of weights [n, r, nodes of a cell, d]: r rows for
-    each number of `row` [n], one after the other; what falls on one place adds up."""
+    """Return the matrix [count * r, freedoms] from weights [n, r, nodes of a cell, d]; `row` [n] is
+    the group of r rows of each, and entries at the same position are summed."""
     r, dim = weights.shape[1], weights.shape[3]
     node = nodes_of_cells(body)[cell]
     column = dim * node[:, None, :, None] + np.arange(dim)

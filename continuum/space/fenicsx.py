@@ -1,12 +1,11 @@
-"""PETSc, initialised without its handlers of signals and closed pipes, and then dolfinx, with the
-root logger left as it was."""
+"""Import of PETSc, without its signal handlers, and then of dolfinx, with the root logger kept."""
 
 import logging
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-if find_spec("dolfinx_solver") is not None:  # pip's wheel: its MPI must be loaded first
+if find_spec("dolfinx_solver") is not None:  # pip's wheel: load its MPI first
     import_module("dolfinx_solver")
 import petsc4py
 
@@ -29,11 +28,10 @@ _SHARED: list[tuple[Any, Any]] = []  # communicators cannot be hashed
 
 
 def shared_by(comm: Any) -> Any:
-    """Return PETSc's own communicator of the processes of mpi4py's, for all objects that they
-    share; all call this alike.
+    """Return a PETSc communicator for the processes of an mpi4py communicator; collective.
 
-    It is kept. PETSc frees its own with its last object, which Python deletes earlier in one
-    process than in another; the next object would then wait for ever for a new one.
+    It is kept for later calls. PETSc frees its own communicator with the last object, which Python
+    deletes at different times in different processes; creating the next object would then hang.
     """
     for known, own in _SHARED:
         if known == comm:

@@ -1,9 +1,9 @@
 """The constants of a jointed elastic body, in one, two or three dimensions.
 
 Component c of node n is freedom d n + c, as in dolfinx's blocked spaces; d is the number of
-components, one or three in a mesh of one dimension, which then runs along the second of three.
-Mass, stiffness and forces are per metre of thickness in the plane, and per square metre of section
-in one dimension.
+components. A one-dimensional mesh has one or three; of three, the second is along the mesh. Mass,
+stiffness and forces are per metre of thickness in the plane, and per square metre of section in one
+dimension.
 """
 
 from typing import Any, NamedTuple
@@ -18,11 +18,11 @@ ROUND_OFF = 1e-14  # of components of unit vectors
 
 
 class Forms(NamedTuple):
-    """Rock, as bilinear forms of UFL on a vector space.
+    """Rock, as bilinear UFL forms on a vector space.
 
     mass : kg. stiffness : N/m. damping : N s/m; None without. Integrals that state no quadrature
-    take that of the body, at the nodes where this makes the mass diagonal; those of functions of
-    `ufl.SpatialCoordinate` UFL's own, and row sums of the mass.
+    use the body's rule, nodal where this makes the mass diagonal. Integrals with
+    `ufl.SpatialCoordinate` use UFL's default, and the mass its row sums.
     """
 
     mass: Any
@@ -31,16 +31,15 @@ class Forms(NamedTuple):
 
 
 class JumpOperator(NamedTuple):
-    """The joints at their points: the jump is B u, and forces are B^T (weights times the tractions
-    on block j), with block j on the side that the normal points to.
+    """The joints at their points: the jump is B u, forces are B^T (weights times tractions on block
+    j), and the normal points from block i to block j.
 
-    A jump is the displacement of block j less that of block i: positive along the normal where the
-    joint opens.
+    The jump is the displacement of block j less that of block i: its normal part is the opening.
 
-    node : int array [points, 2], of block i and of block j. weight : float array [points], m^(d-1).
-    column : int array [points], of the law: the contact between blocks, those across periodic sides
-    last; of a pillar the joint. frame : float array [points, d, d], unit vectors in rows: the
-    normal, then those along the joint. place : float array [points, dimensions], m, on block i.
+    node : of block i and of block j [points, 2]. weight : area [points], m^(d-1). column : of the
+    law [points], the contact between blocks, those across periodic sides last; in a pillar the
+    joint. frame : unit vectors in rows, normal and tangents [points, d, d]. place : on block i
+    [points, dimensions], m.
     """
 
     node: np.ndarray
@@ -50,7 +49,7 @@ class JumpOperator(NamedTuple):
     place: np.ndarray
 
     def jumps(self, u: np.ndarray) -> np.ndarray:
-        """Return the jumps of displacements [freedoms] along the frames [points, d], m."""
+        """Return the jumps of displacements [freedoms] in the frames [points, d], m."""
         one, other = u.reshape(-1, self.frame.shape[1])[self.node.T]
         return np.einsum("qac,qc->qa", self.frame, other - one)
 
@@ -67,16 +66,15 @@ class JumpOperator(NamedTuple):
         return found
 
     def carried(self, stress: np.ndarray) -> np.ndarray:
-        """Return the tractions of a stress [d, d] on the points [points * d], Pa."""
+        """Return the tractions of a stress [d, d] at the points [points * d], Pa."""
         return np.einsum("qac,cd,qd->qa", self.frame, stress, self.frame[:, 0]).ravel()
 
 
 class Facets(NamedTuple):
-    """Facets of one side of the boundary, at their nodes; a node stands once for each facet.
+    """Facets of one side of the boundary, at their nodes; a node appears once for each facet.
 
-    node : int array [n]. weight : float array [n], m^(d-1): integral of a facet's function that is
-    1 at the node and 0 at others. normal : float array [n, components], unit vectors out of the
-    rock. place : float array [n, d], m.
+    node : [n]. weight : integral of the node's shape function over the facet [n], m^(d-1).
+    normal : unit vectors out of the rock [n, components]. place : [n, d], m.
     """
 
     node: np.ndarray
@@ -89,16 +87,14 @@ class Body(NamedTuple):
     """A jointed elastic body.
 
     mesh : dolfinx.mesh.Mesh, in which the two sides of a joint share no node. space : dolfinx.fem's
-    vector space of displacements. cell : of the mesh, with its element. tied : int array [nodes of
-    the space], the node of the body that each is; None where these are the same, but for rock that
-    is whole across periodic sides.
-    x : float array [nodes, d], m. block : int array [cells], of the partition. mass : float array
-    [freedoms], the diagonal, kg. stiffness : N/m, and damping, N s/m (without entries where there
-    is none) : [freedoms, freedoms]. joints : of no points where none is resolved. sides : by name.
+    vector space of displacements. cell : of the mesh, with its element. tied : the body's node of
+    each node of the space, where several move as one; else None. x : nodes [nodes, d], m. block :
+    of the partition [cells]. mass : diagonal [freedoms], kg. stiffness, damping : [freedoms,
+    freedoms], N/m and N s/m, without entries if absent. joints : without points if none is
+    resolved. sides : by name.
 
-    A process's share of a body (`continuum.processes.share`) has the rows of its freedoms, which
-    are the first, and columns of those of others that these need; `block` is of its nodes, and
-    there is no mesh and no space.
+    A process's share of a body (`continuum.processes.share`) has rows for its own freedoms, which
+    come first, and columns for the halo, too; `block` is of its nodes, mesh and space are None.
     """
 
     mesh: Any
@@ -120,17 +116,17 @@ class Body(NamedTuple):
 
 
 def in_motion(vectors: np.ndarray, components: int) -> np.ndarray:
-    """Return vectors in a mesh [n, d] by the components of the motion; a mesh of one dimension runs
-    along y where it has three."""
+    """Return vectors of a mesh [n, d] in the components of the motion [n, components]; a
+    one-dimensional mesh with three components runs along y."""
     return vectors if vectors.shape[1] == components else vectors * [0.0, 1.0, 0.0]
 
 
 def jump_operator(one: Trace, other: Trace, column: np.ndarray, components: int) -> JumpOperator:
-    """Return the jump operator of facets of block i and those of block j at the same places.
+    """Return the jump operator of facets of block i and of block j at the same places.
 
-    column : of the law, int array [facets]. components : of displacements. In the plane the tangent
-    is the normal rotated to the left, in space they are the strike and the line of dip. At the end
-    of a joint in rock both sides have one node, and no jump.
+    column : of the law [facets]. components : of displacements. In the plane the tangent is the
+    normal rotated to the left, in space the tangents are the strike and the line of dip. At the tip
+    of a joint both sides have one common node, which is left out.
     """
     count, points = one.node.size, one.node.shape[1]
     node = np.stack([one.node.ravel(), other.node.ravel()], axis=1)
@@ -148,7 +144,7 @@ def jump_operator(one: Trace, other: Trace, column: np.ndarray, components: int)
 
 
 def at_nodes(node: np.ndarray, tensors: np.ndarray, size: int) -> csr_matrix:
-    """Return the matrix [size, size] of tensors [n, d, d] at nodes, which add up there."""
+    """Return the matrix [size, size] that sums tensors [n, d, d] at nodes [n]."""
     dim = tensors.shape[1]
     own = dim * node[:, None] + np.arange(dim)
     row, column = np.repeat(own, dim, axis=1), np.tile(own, dim)
@@ -156,7 +152,7 @@ def at_nodes(node: np.ndarray, tensors: np.ndarray, size: int) -> csr_matrix:
 
 
 def forces_on(body: Body, facets: Facets, traction: np.ndarray) -> np.ndarray:
-    """Return the force on every freedom of tractions [n, d] (Pa) on facets at their nodes, N."""
+    """Return the force on every freedom, N, from tractions [n, d], Pa, at the nodes of facets."""
     dim, found = body.components, np.zeros(body.stiffness.shape[0])
     own = dim * facets.node[:, None] + np.arange(dim)
     np.add.at(found, own, facets.weight[:, None] * traction)
@@ -164,5 +160,5 @@ def forces_on(body: Body, facets: Facets, traction: np.ndarray) -> np.ndarray:
 
 
 def directions(body: Body) -> list[int]:
-    """Return the axes, x, y, z, of the components of the motion of a pillar or in space."""
+    """Return the axis, 0 to 2 for x to z, of each component of the motion."""
     return [1] if body.components == 1 else [0, 1, 2][: body.components]

@@ -1,9 +1,9 @@
-"""Rock of a script: its density and moduli in every cell, found from its forms.
+"""Density and moduli of a script's rock in every cell, from its forms.
 
-Of displacements u = E x and v = F x the integrand of the stiffness is C_ijkl E_kl F_ij, and of
-translations u = v = e that of the mass is rho. The means of both over each cell give stress,
-sections, quiet sides and bounds of rock in any form, and tell whether it is rock: whether it has
-one density, and moduli that are symmetric, not negative, and do not resist rigid motion.
+For displacements u = E x and v = F x the integrand of the stiffness is C_ijkl E_kl F_ij; for
+translations u = v = e that of the mass is rho. Their means over each cell serve for stress,
+sections, quiet sides and bounds, and check the forms: one density, and moduli that are symmetric,
+not negative, and without resistance to rigid motion.
 """
 
 from typing import Any
@@ -19,16 +19,15 @@ from jointwave.continuum.space import compat
 from jointwave.continuum.space.model import Forms
 from jointwave.continuum.space.rock import Material
 
-DIGITS = 9  # to which moduli of cells of one rock agree
-ZERO = 1e-9  # of the largest entry: what must be zero
+DIGITS = 9  # in which the moduli of cells of one rock agree
+ZERO = 1e-9  # tolerance of entries that must be zero, over the largest entry
 
 #: A displacement linear in place: its translation [components] and gradient [components, d].
 Motion = tuple[np.ndarray | float, np.ndarray | float]
 
 
 class CellMeans:
-    """The means of a bilinear form's integrand over the cells of a mesh, for displacements that are
-    linear in place."""
+    """The means of a bilinear form's integrand over cells, for displacements linear in place."""
 
     def __init__(self, space: Any, form: ufl.Form) -> None:
         domain, x = space.mesh, ufl.SpatialCoordinate(space.mesh)
@@ -54,7 +53,7 @@ class CellMeans:
 
 
 def strains_of(dim: int, size: int) -> np.ndarray:
-    """Return the gradients of displacements of unit strains in Voigt's order [n, components, d]."""
+    """Return displacement gradients of unit strains in Voigt's order [n, components, d]."""
     if dim == 1:
         return np.eye(size)[:, :, None]
     found = np.zeros((len(PAIRS[dim]), dim, dim))
@@ -67,10 +66,10 @@ def strains_of(dim: int, size: int) -> np.ndarray:
 def materials_of(
     scene: AnyScene, space: Any, forms: Forms, own: list[Material]
 ) -> tuple[list[Material], np.ndarray]:
-    """Return the materials of forms on a space, and which of them each cell has, int array [cells].
+    """Return the materials of forms on a space, and the index of each cell's material [cells].
 
-    own : of the scene. Raises SceneError for forms that are not of rock, for damping that is no
-    time constant times the stiffness, and for what the scene takes from its own rock.
+    own : materials of the scene. Raises SceneError for forms that are not of rock, for damping that
+    is no time constant times the stiffness, and for features that need the scene's own rock.
     """
     if not isinstance(forms, Forms):
         _refuse(scene, "the function must return Forms(mass, stiffness, damping)")
@@ -111,7 +110,7 @@ def materials_of(
 
 
 def _rigid(space: Any, strains: np.ndarray) -> Motion:
-    """Return a rigid motion that has something of every one: forms that resist any resist it."""
+    """Return a rigid motion with all translations and rotations: it detects any resistance."""
     size, dim = strains.shape[1:]
     share = np.sqrt([2.0, 3.0, 5.0])
     turns = [np.triu(one, 1) - np.tril(one, -1) for one in strains[dim:]] if dim > 1 else []
@@ -120,7 +119,7 @@ def _rigid(space: Any, strains: np.ndarray) -> Motion:
 
 
 def _density(scene: AnyScene, mass: ufl.Form, space: Any) -> np.ndarray:
-    """Return the density of each cell, kg/m3 [cells]; raises SceneError where a mass has none."""
+    """Return the density of each cell [cells], kg/m3; raises SceneError for any other mass form."""
     means = CellMeans(space, mass)
     table = means.table([(one, 0.0) for one in np.eye(means.size)])
     found = table[:, 0, 0]
@@ -131,7 +130,7 @@ def _density(scene: AnyScene, mass: ufl.Form, space: Any) -> np.ndarray:
 
 
 def _refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None:
-    """Raise SceneError for what a scene takes from its own [rock], which a script has replaced."""
+    """Raise SceneError for features that need the scene's [rock], which a script has replaced."""
     if forms.damping is None and any(one.time_constant for one in own):
         _refuse(scene, "the scene's dashpots of rock need Forms.damping", "damping")
     if scene.is_column:

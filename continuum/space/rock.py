@@ -1,11 +1,11 @@
-"""Rock as bilinear forms of UFL: mass, stiffness and Kelvin-Voigt damping.
+"""Rock as bilinear UFL forms: mass, stiffness and Kelvin-Voigt damping.
 
     M(u, v) = rho u . v dx,   K(u, v) = sigma(u) : eps(v) dx,   C(u, v) = eta sigma(u) : eps(v) dx
 
 with eps(u) = sym(grad u). Isotropic rock has sigma = lambda tr(eps) I + 2 mu eps: with Lame's
 constants in plane strain and in space, with lambda = E nu / (1 - nu^2) in plane stress. Anisotropic
 rock has sigma_ij = C_ijkl eps_kl. A bar has sigma = E u' along it, and G u' across it. A script can
-give forms of its own.
+supply other forms.
 """
 
 from collections.abc import Callable, Mapping
@@ -33,7 +33,7 @@ from jointwave.continuum.joints import layers_of
 from jointwave.continuum.space.compat import cell_constants
 from jointwave.continuum.space.model import Forms
 
-#: Rock of a script: of a scene and a space of displacements.
+#: Rock of a script: a function of a scene and a space of displacements.
 Rock = Callable[[Any, Any], Forms]
 
 
@@ -48,7 +48,7 @@ class Material(NamedTuple):
 
 def isotropic(space: Any, density: Any, lame: Any, shear: Any, time_constant: Any = None) -> Forms:
     """Return isotropic rock: density, kg/m3; Lame's constants lambda and mu, Pa; Kelvin-Voigt time
-    constant, s. Each is a number, a function or another expression of UFL."""
+    constant, s. Each is a number, a function or another UFL expression."""
 
     def stress(eps: Any) -> Any:
         return lame * ufl.tr(eps) * ufl.Identity(eps.ufl_shape[0]) + 2 * shear * eps
@@ -57,7 +57,7 @@ def isotropic(space: Any, density: Any, lame: Any, shear: Any, time_constant: An
 
 
 def anisotropic(space: Any, density: Any, moduli: Any, time_constant: Any = None) -> Forms:
-    """Return anisotropic rock; moduli : C_ijkl, Pa, an array or a tensor of UFL [d, d, d, d]."""
+    """Return anisotropic rock; moduli : C_ijkl, Pa, an array or a UFL tensor [d, d, d, d]."""
     if isinstance(moduli, np.ndarray):
         moduli = ufl.as_tensor(moduli.tolist())
     i, j, k, m = ufl.indices(4)
@@ -69,7 +69,7 @@ def anisotropic(space: Any, density: Any, moduli: Any, time_constant: Any = None
 
 
 def elastic(space: Any, density: Any, stress: Callable[[Any], Any], time_constant: Any) -> Forms:
-    """Return rock with a stress that is linear in the strain; a bar's strain is u'."""
+    """Return rock from its density and stress, a function linear in the strain (u' in a bar)."""
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     stiffness = inner(stress(strain(u)), strain(v))
     damping = None if time_constant is None else time_constant * stiffness * dx
@@ -83,13 +83,13 @@ def strain(u: Any) -> Any:
 
 
 def rock_of_cells(space: Any, materials: list[Material], which: np.ndarray) -> Forms:
-    """Return rock by the material of each cell of the mesh, int array [cells]."""
+    """Return rock from the index of the material of each cell of the mesh [cells]."""
     density, eta = np.array([[m.density, m.time_constant] for m in materials])[which].T
     stiffness = np.array([m.stiffness for m in materials])[which]
     found = _of_cells(space, density, stiffness)
     if not eta.any():
         return found
-    # The form of the stiffness with other numbers: it is compiled once for both.
+    # The same form as the stiffness with other numbers, so that it is compiled once for both.
     damping = _of_cells(space, density, eta[:, None, None] * stiffness)
     return found._replace(damping=damping.stiffness)
 
@@ -109,8 +109,8 @@ def _of_cells(space: Any, density: np.ndarray, stiffness: np.ndarray) -> Forms:
 
 
 def rock_mass(scene: RockMass, smeared: list[JointSet], model: str) -> list[Material]:
-    """Return the rock of each region of a rock mass, and last that of the rest: with the effective
-    medium of joint sets that are not resolved."""
+    """Return the rock of each region of a rock mass, and last of the rest, each as an effective
+    medium with the joint sets that are not resolved."""
     dim, relaxes = scene.domain.dimension, mechanisms_of(scene, model)
     unrelaxed = 1.0 if relaxes is None else relaxes.unrelaxed
     rayleigh = scene.damping.rayleigh
@@ -129,11 +129,12 @@ def pillar(
     scene: Scene, model: str, components: int, dim: int, less: Mapping[int, float]
 ) -> list[Material]:
     """Return the rock of a pillar's segments, intact ("jointed") or homogenised, of its layers, and
-    of the homogenised blocks that have less of their joints, in halves of an ordinary one.
+    of homogenised blocks without part of their joints; less : this part of each block, in halves of
+    an ordinary joint.
 
-    A layer of thickness h is rock of modulus K_n h that does not widen when it is compressed: held
-    by the rock on both sides, a thin layer can not either, and K_n is its whole stiffness. Rock
-    with a quality factor has its unrelaxed modulus and no dashpots: those are of joints alone.
+    A layer of thickness h has the modulus K_n h and Poisson's ratio 0: the rock on both sides keeps
+    a thin layer from widening, and K_n is its whole stiffness. Rock with a quality factor has its
+    unrelaxed modulus and no dashpots.
     """
     p, relaxes, found = calibrate(scene), mechanisms_of(scene, model), []
 
@@ -141,12 +142,12 @@ def pillar(
         shear = shear_modulus(modulus, poisson)
         if dim == 1:  # E along a bar, and G across it where it has three components
             C = np.diag([modulus] if components == 1 else [shear, modulus, shear])
-        elif scene.motion.rotation == "none":  # plane sections that widen freely
+        elif scene.motion.rotation == "none":  # plane sections, free to widen
             C = np.diag([modulus] * dim + [shear] * (dim * (dim - 1) // 2))
         elif dim == 3:
             speeds = speeds_from_modulus(modulus, poisson, density)
             C = stiffness(ElasticRock(density, *speeds), [], 3)
-        else:  # a sheet that widens freely across its plane
+        else:  # plane stress
             sheet = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
             C = modulus / (1 - poisson**2) * sheet
         found.append(Material(density, C, eta))

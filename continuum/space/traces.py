@@ -1,4 +1,4 @@
-"""Nodes on facets of cells, in an order that the two sides of a joint share, and their weights."""
+"""Nodes on facets of cells and their weights, in the same order on both sides of a joint."""
 
 from typing import Any, NamedTuple
 
@@ -9,15 +9,15 @@ from jointwave.continuum.space.compat import quadrature, reference
 
 FACET = {"triangle": "interval", "quadrilateral": "interval"}
 FACET |= {"tetrahedron": "triangle", "hexahedron": "quadrilateral"}
-ON = 1e-9  # share of a corner that a node of another facet has
+ON = 1e-9  # shape function of a corner below which a node is on a facet without this corner
 
 
 class Trace(NamedTuple):
     """Nodes of k facets, q of each.
 
-    node : int array [k, q]. weight : float array [k, q], integrals of the functions of the nodes
-    over the facet, m^(d-1). normal : float array [k, q, d], unit vectors out of the cell. place :
-    float array [k, q, d], m. The order follows from that of the numbers of the facet's vertices.
+    node : [k, q]. weight : integrals of the shape functions over the facet [k, q], m^(d-1).
+    normal : unit vectors out of the cell [k, q, d]. place : [k, q, d], m. The order of nodes
+    follows from the numbers of the facet's vertices.
     """
 
     node: np.ndarray
@@ -27,11 +27,11 @@ class Trace(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """A cell with its element of basix, which is complete up to an order.
+    """A cell with its basix element, which is complete up to `order`.
 
-    shares : of its corners at the nodes [nodes, corners]. at : points of a rule on a facet, by
-    shares of its corners [r, c]. functions : of the nodes there, times the weights of the rule, on
-    each reference facet [facets, r, nodes].
+    shares : shape functions of the corners at the nodes [nodes, corners]. at : points of a facet's
+    quadrature, by shape functions of its corners [r, c]. functions : of the nodes there, times the
+    quadrature weights, on each reference facet [facets, r, nodes].
     """
 
     kind: str
@@ -43,7 +43,7 @@ class Reference(NamedTuple):
 
 
 def reference_cell(kind: str, order: int, element: Any) -> Reference:
-    """Return the reference cell of a kind with an element of basix, one function a node."""
+    """Return the reference cell of a kind with a basix element, one function a node."""
     corners = reference(kind, 1)
     shares = corners.tabulate(0, element.points)[0, :, :, 0]
     degree = int(element.highest_degree if hasattr(element, "highest_degree") else element.degree)
@@ -56,7 +56,8 @@ def reference_cell(kind: str, order: int, element: Any) -> Reference:
 
 
 def _rule(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points of a facet, by shares of its corners [n, corners], and weights [n]."""
+    """Return quadrature points of a facet, by shape functions of its corners [n, corners], and
+    weights [n]."""
     if kind == "interval":
         return np.ones((1, 1)), np.ones(1)
     at, weight = quadrature(FACET[kind], degree)
@@ -68,8 +69,8 @@ def trace(
 ) -> Trace:
     """Return the nodes of facets of cells.
 
-    nodes, vertices : int arrays [cells, n], of each cell. x : float array [cells, corners, d], of
-    its corners, m. of : k facets.
+    nodes, vertices : of each cell [cells, n]. x : its corners [cells, corners, d], m. of : k
+    facets.
     """
     facets = facets_of(cell.kind)
     own = facets[of.facet]
@@ -90,7 +91,8 @@ def trace(
 
 
 def _on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes on a facet with these corners, and the shares [q, c] of the corners."""
+    """Return the nodes [q] on a facet with these corners, and the corners' shape functions there
+    [q, c]."""
     others = np.delete(cell.shares, corners, axis=1)
     local = np.flatnonzero(np.abs(others).max(axis=1) < ON)
     shares = cell.shares[local][:, corners]
@@ -102,8 +104,8 @@ def _normals(
     cell: Reference, facet: int, at: np.ndarray, x: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the unit normals out of cells with corners x [k, corners, d] at points of a facet
-    [k, q, d], and the area of the facet there over that of the reference facet [k, q]; at : shares
-    of the corners of the facet [q, c]."""
+    [k, q, d], and the ratio of area to reference area there [k, q]; at : shape functions of the
+    facet's corners [q, c]."""
     corners, dim = facets_of(cell.kind)[facet], x.shape[2]
     if dim == 1:
         normal = np.ones((len(x), len(at), 1))

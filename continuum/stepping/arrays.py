@@ -11,17 +11,17 @@ from jointwave.continuum.stepping.tractions import Points
 from jointwave.joints.law import LawFlags
 from jointwave.results.dataset import TERMS
 
-#: Rows of the sums of a ledger, J: what was dissipated and what went in.
+#: Rows of the sums of a ledger, J: dissipated energies, and the work of external forces.
 VISCOUS, FRICTION, BOUNDARY, WORK = range(4)
 
 
 class StepFlags(NamedTuple):
-    """Which effects a body has: constants of the compiled kernel.
+    """The effects of a body: constants of the compiled kernel.
 
     product : kind of the stiffness, `continuum.stepping.product`. law : None without joints.
-    stressed : whether these carry anything at u = 0. damped : whether the rock has dashpots.
+    stressed : whether joints carry tractions at u = 0. damped : whether the rock has dashpots.
     relaxing : whether it has a quality factor. ledger : whether energies are recorded. sprung :
-    whether springs are in front of dashpots of sides.
+    whether springs are in front of boundary dashpots.
     """
 
     dim: int
@@ -35,19 +35,21 @@ class StepFlags(NamedTuple):
 
 
 class Jumps(NamedTuple):
-    """The jump operator by pairs of nodes: first, uint32 array [points, 2], where the first freedom
-    of each is in vectors, the others `Product.stride` further on; frame, float array
-    [points, d, d]."""
+    """The jump operator by pairs of nodes: first, uint32 [points, 2], place of each node's first
+    freedom in vectors, with the others at intervals of `Product.stride`; frame [points, d, d]."""
 
     first: np.ndarray
     frame: np.ndarray
 
 
 class Quiet(NamedTuple):
-    """Nodes on dashpots: freedom, int array [k, d]; viscosity [k, d, d], N s/m; beta [k, d, d],
-    dt / (2 M (1 + alpha dt / 2)) times it, and solve, the inverse of 1 + beta. stiffness (N/m) :
-    of springs in front of dashpots, whose closure becomes decay times it + gain (s) times the
-    velocity in a step: [k, d], [0, d] without (`joints.ends`)."""
+    """Nodes on dashpots.
+
+    freedom : [k, d]. viscosity : [k, d, d], N s/m. beta : dt / (2 M (1 + alpha dt / 2)) times the
+    viscosity. solve : inverse of 1 + beta. stiffness : N/m, of springs in front of dashpots; a step
+    changes their closure to decay times the closure + gain (s) times the velocity: [k, d], [0, d]
+    without springs (`joints.ends`).
+    """
 
     freedom: np.ndarray
     viscosity: np.ndarray
@@ -59,15 +61,14 @@ class Quiet(NamedTuple):
 
 
 class Constants(NamedTuple):
-    """The constants of steps; what is absent is empty.
+    """The constants of steps; absent ones are empty.
 
-    dt : s. mass : float array [n], kg, of the freedoms that steps move, which are the first of
-    all vectors. inverse : dt / (M (1 + alpha dt / 2)), s/kg; 0 of padding.
-    keep : (1 - alpha dt / 2) / (1 + alpha dt / 2). alpha : of mass-proportional damping, 1/s.
-    memory : of the rock. stiffness, damping : `product.Table`. jumps : B; points :
-    `tractions.Points`. steady : float array [n], N. driven : int array [k], freedoms of forces with
-    a history. fixed : int array [f], freedoms whose motion is given: direction [f] times what moves
-    in a step. receivers : with a `Table` in place of each matrix, empty where it is absent.
+    dt : s. mass : of the stepped freedoms, the first of all vectors [n], kg. inverse :
+    dt / (M (1 + alpha dt / 2)), s/kg, 0 for padding. keep : (1 - alpha dt / 2) / (1 + alpha dt /
+    2). alpha : of mass-proportional damping, 1/s. memory : of the rock. stiffness, damping :
+    `product.Table`. jumps : B. points : `tractions.Points`. steady : constant forces [n], N.
+    driven : freedoms of forces with a history [k]. fixed : freedoms with prescribed motion [f],
+    direction [f] times the move of each step. receivers : with a `Table` for each matrix.
     """
 
     dt: float
@@ -91,8 +92,8 @@ class Constants(NamedTuple):
 class State(NamedTuple):
     """The state.
 
-    u : displacement, m. v, v_before : velocity half a step before u, and one and a half before,
-    m/s. elongation : of mechanisms [l, n], m. history : of points, `tractions`. sums : of the
+    u : displacement, m. v, v_before : velocity half a step and one and a half steps before u, m/s.
+    elongation : of mechanisms [l, n], m. history : of points, see `tractions`. sums : of the
     ledger, J. closure : of springs in front of dashpots [k, d], m.
     """
 
@@ -106,8 +107,9 @@ class State(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Vectors that a step fills: force, rate, drag, and of rock with a quality factor strained, m,
-    and rock, N [n]; of points [points * d]; [0] if absent. braking : of quiet nodes [k, d], N."""
+    """Work vectors of a step, [0] if absent: force, rate, drag and, with a quality factor,
+    strained, m, and rock, N, of freedoms [n]; jump to drags of points [points * d]; braking : of
+    quiet nodes [k, d], N."""
 
     force: np.ndarray
     rate: np.ndarray
@@ -123,8 +125,8 @@ class Work(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """What is recorded: velocity, displacement, stress, traction, jump [rows, samples]; energy
-    [terms, samples], in the order of `results.dataset.TERMS`, no samples where it is not."""
+    """Recorded samples: velocity, displacement, stress, traction, jump [rows, samples]; energy in
+    the order of `results.dataset.TERMS` [terms, samples], [terms, 0] without a ledger."""
 
     velocity: np.ndarray
     displacement: np.ndarray
@@ -135,7 +137,7 @@ class Samples(NamedTuple):
 
 
 def samples_for(readings: Readings, samples: int, energy: bool) -> Samples:
-    """Return empty samples."""
+    """Return arrays of zeros for `samples` samples."""
     read = readings.motion, readings.motion, readings.stress, readings.traction, readings.jump
     shapes = [(one.shape[0], samples) for one in read]
     return Samples(*map(np.zeros, [*shapes, (len(TERMS), samples if energy else 0)]))

@@ -1,4 +1,4 @@
-"""The forces of a body in any state, and how they resist its motion, for Newton's method."""
+"""The forces of a body in any state, and their tangent matrices, for Newton's method."""
 
 from functools import cache, partial
 from typing import NamedTuple
@@ -12,14 +12,13 @@ from jointwave.continuum.stepping.newton import Factors
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.tractions import forces_for, history_at_rest, tangents_for
 
-#: Of a displacement: what its last digits weigh cannot be balanced.
+#: Round-off of a displacement, relative: forces of this size cannot be balanced.
 LAST_DIGITS = 8 * float(np.finfo(float).eps)
 
 
 class Past(NamedTuple):
-    """What forces depend on beside the motion. history : of points, `tractions`. elongation : of
-    the rock's mechanisms [l, n], m. closure : of springs in front of dashpots of sides [k, d], m.
-    """
+    """The history variables of forces: history of points, see `tractions`; elongation of the rock's
+    mechanisms [l, n], m; closure of springs in front of boundary dashpots [k, d], m."""
 
     history: np.ndarray
     elongation: np.ndarray
@@ -29,10 +28,10 @@ class Past(NamedTuple):
 class Forces(NamedTuple):
     """The forces of a state [freedoms], N.
 
-    whole : all together. viscous : of dashpots of rock and joints, mass-proportional damping, and
-    of rock with a quality factor. boundary : of quiet sides. external : with a history. past :
-    after the step. loads : of points [points * d], N. jump : m. energies : of joints' springs,
-    spent by opening, and by friction in the step, J [3]. size : the largest that is summed up [1].
+    whole : their sum. viscous : of dashpots of rock and joints, mass-proportional damping, and of
+    rock with a quality factor. boundary : of quiet sides. external : with a history. past : after
+    the step. loads : of points [points * d], N. jump : m. energies : stored in joints, spent by
+    fracture, and by friction in the step [3], J. size : the largest term of the sum [1].
     """
 
     whole: np.ndarray
@@ -51,10 +50,10 @@ class Balance:
 
     Attributes
     ----------
-    damping, quiet : [freedoms, freedoms], of rock with mass-proportional damping, and of quiet
-    sides. free : int array, freedoms that are not held. past : at first. memory : of the rock in
-    steps of dt. springs : in front of dashpots, None without, of steps; ends : int array [k, d],
-    the freedoms of quiet sides.
+    damping, quiet : of rock with mass-proportional damping, and of quiet sides [freedoms,
+    freedoms], N s/m. free : freedoms that are not held. past : at the start. memory : function of
+    dt, of the rock. springs : function of dt, in front of dashpots; None without. ends : freedoms
+    of quiet sides [k, d].
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -85,8 +84,8 @@ class Balance:
         external: np.ndarray,
         steady: float = 1.0,
     ) -> Forces:
-        """Return the forces at displacements u (m) and velocities v (m/s), after moving by `moved`
-        in dt (s) from a state with that past; steady : share of the steady forces."""
+        """Return the forces at displacements u (m) and velocities v (m/s), after a displacement
+        `moved` in dt (s) from a state of this past; steady : factor on the constant forces."""
         memory, closure, jump = self.memory(dt), before.closure, self.jumps @ u
         elongation = memory.decay[:, None] * before.elongation + memory.gain[:, None] / dt * moved
         elastic, drag = self.stiffness @ memory.strained(u, elongation), self.damping @ v
@@ -114,7 +113,7 @@ class Balance:
         return Forces(whole, drag, boundary, external, past, *joints, energies, size)
 
     def resistance(self, dt: float, rate: float) -> csr_matrix:
-        """Return how rock and sides resist what moves in a step of dt (s) [freedoms, freedoms],
+        """Return the tangent stiffness of rock and sides in a step of dt (s) [freedoms, freedoms],
         N/m; rate : rate factor, 1/s."""
         found = self.memory(dt).tangent(dt) * self.stiffness + rate * (self.damping + self.quiet)
         if self.springs is not None:
@@ -126,7 +125,7 @@ class Balance:
     def of_joints(
         self, u: np.ndarray, v: np.ndarray, dt: float, r: float, before: np.ndarray
     ) -> np.ndarray:
-        """Return how each point resists its jump [points, d, d], N/m; r : rate factor, 1/s."""
+        """Return the tangent stiffness of each point [points, d, d], N/m; r : rate factor, 1/s."""
         found = np.zeros((len(self.points.weight), self.dim, self.dim))
         if self.parts is not None:
             kernel = tangents_for(self.parts, self.dim, self.points.carried.size > 0)
@@ -134,8 +133,7 @@ class Balance:
         return found
 
     def factors(self, matrix: csr_matrix, tangents: np.ndarray | None = None) -> Factors:
-        """Return the factors of a matrix of the freedoms that move, with those of the joints'
-        tangents."""
+        """Return the factors of a matrix plus the joints' tangents, on the free freedoms."""
         if tangents is not None and len(tangents):
             point = np.arange(len(tangents) + 1)
             middle = bsr_matrix((tangents, point[:-1], point))

@@ -7,9 +7,9 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import eigsh
 
-FEW = 200  # freedoms up to which the dense solver is the quicker one
-RESIDUAL = 2e-4  # of the iterative solver, relative; it is added to the eigenvalue
-SETTLED = 1e-6  # relative change of the step that ends the search
+FEW = 200  # freedoms up to which the dense solver is faster
+RESIDUAL = 2e-4  # relative, of the iterative solver; the residual is added to the eigenvalue
+SETTLED = 1e-6  # convergence: relative change of the step
 ROUNDS = 20
 
 
@@ -22,13 +22,13 @@ def critical_step(
 ) -> float:
     """Return the critical step, s, of rock and joints together.
 
-    With dashpots that see the rate extrapolated to the whole step it is critical when the largest
-    eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4 (`numerics.critical_step`). Of the eigenvector of one
-    step this is a quadratic equation for the next, which converges quadratically, as Rayleigh's
+    With dashpots at extrapolated rates the step is critical when the largest eigenvalue of
+    M^-1 (dt^2 K + 4 dt C) is 4 (`numerics.critical_step`). For the eigenvector of one step this is
+    a quadratic equation for the next step; the iteration converges quadratically, since Rayleigh's
     quotient is stationary. Quiet sides do not bound the step.
 
-    mass [n], kg; stiffness, N/m; viscosity, N s/m, without entries where there is none. fixed : int
-    array, freedoms whose motion is given. start : any motion [n].
+    mass : [n], kg. stiffness : N/m. viscosity : N s/m, without entries if absent. fixed : freedoms
+    with prescribed motion. start : start vector of the eigenvalue solver [n].
     """
     moving = np.setdiff1d(np.flatnonzero(stiffness.diagonal() > 0), fixed)
     scale = diags(1 / np.sqrt(mass[moving]))

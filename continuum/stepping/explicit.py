@@ -1,12 +1,12 @@
 """Leapfrog steps of a jointed elastic body, compiled.
 
 Displacements u are at whole steps, velocities v half a step before or after. Dashpots of rock and
-joints see the rate extrapolated to the whole step, 1.5 v[n-1/2] - 0.5 v[n-3/2]; quiet sides and
-mass-proportional damping see the mean velocity of the step, solved node by node. The kinetic energy
-of a whole step is v[n-1/2] M v[n+1/2] / 2: with the springs' it equals
-(v M v + u[n] K u[n+1]) / 2, which leapfrog conserves exactly, and forces work half a step before
-and half a step after. All work of rock with a quality factor is summed up as viscous; samples take
-what its springs store out of it.
+joints use rates extrapolated to the whole step, 1.5 v[n-1/2] - 0.5 v[n-3/2]; quiet sides and
+mass-proportional damping use the mean velocity of the step, solved node by node. The kinetic energy
+of a whole step is v[n-1/2] M v[n+1/2] / 2. With the elastic energy it equals
+(v M v + u[n] K u[n+1]) / 2, which leapfrog conserves exactly. Forces work over half a step before
+and half a step after. All work of rock with a quality factor is summed as viscous; samples subtract
+the energy stored in its springs.
 """
 
 from collections.abc import Callable
@@ -27,7 +27,7 @@ from jointwave.numerics.jit import jitted
 
 @formula
 def read(matrix, x, constant, out, s, share):
-    """Add a share of the product of a matrix and a vector, and a constant, to sample s."""
+    """Add `share` times the product of a matrix and a vector, plus a constant, to sample s."""
     for i in range(matrix.start.size - 1):
         a = 0.0 if constant is None else constant[i]
         for k in range(matrix.start[i], matrix.start[i + 1]):
@@ -37,7 +37,7 @@ def read(matrix, x, constant, out, s, share):
 
 @formula
 def dot(x, y):
-    """Return the product of two vectors, as far as the first goes, summed in four parts."""
+    """Return the scalar product of two vectors over the length of x, in four partial sums."""
     a, b, c, d, n = 0.0, 0.0, 0.0, 0.0, x.size // 4 * 4
     for i in range(0, n, 4):
         a += x[i] * y[i]
@@ -68,7 +68,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         """Set the jumps of a vector."""
         for q in range(jumps.first.shape[0]):
             i, j, e = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1]), jumps.frame
-            u, v, w = x[j] - x[i], 0.0, 0.0  # read once: what is set might be part of x
+            u, v, w = x[j] - x[i], 0.0, 0.0  # read first: product and x might share memory
             if dim > 1:
                 v = x[j + ONE] - x[i + ONE]
             if dim > 2:
@@ -83,7 +83,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
 
     @formula
     def add_transposed(jumps, x, force):
-        """Add forces that do as much work as x does with the jumps."""
+        """Add B^T x, the nodal forces of point forces x."""
         for q in range(jumps.first.shape[0]):
             i, j, e = np.uint64(jumps.first[q, 0]), np.uint64(jumps.first[q, 1]), jumps.frame
             u, v, w = components(dim, x, q)
@@ -97,10 +97,10 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                 force[j + o] += found
 
     def steps(c, s, w, out, drive, moves, span):
-        """Take the steps first .. last - 1, with a sample at each that `stride` divides.
+        """Take the steps first .. last - 1, with a sample at each multiple of `stride`.
 
-        drive : float array [steps, k], N, forces on driven freedoms. moves : float array [steps],
-        m, motion of fixed freedoms in each step. span : first, last, stride.
+        drive : forces on driven freedoms [steps, k], N. moves : motion of fixed freedoms in each
+        step [steps], m. span : first, last, stride.
         """
         setting = flush_denormals()
         c, s, w, out, drive = borrowed((c, s, w, out, drive))
@@ -119,7 +119,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
             sampled, given = n % stride == 0, drive[n - first]
             elastic, spent, kept = 0.0, 0.0, 0.0
 
-            # Forces of rock and joints, drags apart, and what their springs store where sampled.
+            # Forces of rock and joints, drags separately, and stored energies where sampled.
             if relaxing:
                 if ledger and sampled:
                     multiply(stiffness, u, force)
@@ -169,7 +169,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                     for a in range(dim):
                         force[freedom[k, a]] -= spring[k, a] * closure[k, a]
 
-            # Velocities half a step later: of all nodes, on dashpots of sides, and given ones.
+            # Velocities half a step later: of all nodes, of dashpots' nodes, prescribed ones.
             for i in range(own):
                 v_before[i] = v[i]
                 v[i] = keep * v[i] + inverse[i] * force[i]

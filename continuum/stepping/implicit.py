@@ -1,15 +1,15 @@
-"""Implicit steps of a body: the generalised-alpha method, each step solved by Newton's method.
+"""Implicit steps of a body: the generalised-alpha method, with Newton's method in each step.
 
-Displacement u, velocity v and acceleration a are carried over a step by Newmark's formulas,
+Displacement u, velocity v and acceleration a advance by Newmark's formulas,
 
     u' = u + dt v + dt^2 ((1/2 - beta) a + beta a'),   v' = v + dt ((1 - gamma) a + gamma a'),
 
-and the equation of motion holds between its ends, with the sum F of all forces (J. Chung &
+and the equation of motion holds within the step, with the sum F of all forces (J. Chung &
 G. M. Hulbert, J. Appl. Mech. 60, 1993, 371-375):
 
     M ((1 - alpha_m) a' + alpha_m a) = (1 - alpha_f) F' + alpha_f F.
 
-A step that does not converge is taken in halves.
+A step that does not converge is halved.
 """
 
 from typing import Any, NamedTuple
@@ -29,7 +29,7 @@ RESIDUAL = 1e-10  # tolerance over the largest summed force
 
 
 class Scheme(NamedTuple):
-    """The constants of the method; alpha_m and alpha_f are the shares of the step's beginning."""
+    """The constants of the method; alpha_m and alpha_f are weights of the start of the step."""
 
     alpha_m: float
     alpha_f: float
@@ -38,8 +38,8 @@ class Scheme(NamedTuple):
 
 
 def scheme(rho: float) -> Scheme:
-    """Return the second-order, unconditionally stable scheme of spectral radius `rho`, 0 .. 1: what
-    a step leaves of infinite frequencies. 1 is the trapezoidal rule."""
+    """Return the second-order, unconditionally stable scheme with spectral radius `rho`, 0 .. 1, at
+    infinite frequency; 1 is the trapezoidal rule."""
     alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
     share = 1 - alpha_m + alpha_f
     return Scheme(alpha_m, alpha_f, share**2 / 4, share - 0.5)
@@ -60,8 +60,8 @@ class Implicit:
 
     Attributes
     ----------
-    now : the state at the last step. samples : what is recorded. counts : iterations,
-    factorisations and halvings. work_of_a_step : over that of an explicit one, about.
+    now : the state at the last step. samples : recorded ones. counts : iterations, factorisations
+    and halvings. work_of_a_step : approximately, over that of an explicit step.
     """
 
     work_of_a_step = 100
@@ -78,7 +78,7 @@ class Implicit:
         self._factors: tuple[float, np.ndarray, Factors] | None = None
         self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
         weight, carried = own.points.weight, np.abs(own.points.carried)
-        each = np.repeat(weight, own.dim)[: carried.size]  # nothing without a prestress
+        each = np.repeat(weight, own.dim)[: carried.size]  # empty without a prestress
         self._carried = float((each * carried).max(initial=0.0))
 
     @property
@@ -93,7 +93,7 @@ class Implicit:
 
     @property
     def last(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement, m, and velocity, m/s, at the last step, and the displacement by which
+        """Displacement, m, and velocity, m/s, at the last step, and the displacement at which
         elastic rock would have the same stress, m."""
         elongation = self.now.forces.past.elongation
         return self.u, self.v, self.balance.memory(self.dt).strained(self.u, elongation)
@@ -105,20 +105,20 @@ class Implicit:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What a result says of the steps."""
+        """Attributes of a result."""
         names = "newton_iterations", "factorisations", "halved_steps"
         counts = dict(zip(names, self.counts.tolist(), strict=True))
         return {"spectral_radius": self.rho, **counts}
 
     @property
     def bytes(self) -> int:
-        """The size of matrices, without their factors, and state."""
+        """Bytes of matrices, without their factors, and state."""
         own = self.balance
         every = own.stiffness, own.damping, own.quiet, own.jumps
         return size_of(self.now, own.points, *((m.data, m.indices, m.indptr) for m in every))
 
     def start(self, u: np.ndarray, history: np.ndarray) -> None:
-        """Begin at rest at displacements u (m) and with the history of points there."""
+        """Start at rest at displacements u (m) with the history of points."""
         now, own = self.now, self.balance
         now.u[:] = u
         now.forces.past.history[:] = history
@@ -127,7 +127,7 @@ class Implicit:
             now.sums[VISCOUS] = memory.energy(own.stiffness, u, own.past.elongation)
 
     def take(self, first: int, last: int, stride: int) -> None:
-        """Go to the steps first .. last - 1, with a sample at each that `stride` divides."""
+        """Advance to the steps first .. last - 1, with a sample at each multiple of `stride`."""
         self._motion = motion_of(self.problem.held, last + 1, self.dt)
         for n in range(first, last):
             if n == 0:
@@ -138,7 +138,7 @@ class Implicit:
                 self._record(n // stride)
 
     def _begin(self) -> None:
-        """Balance the forces of the first moment by its acceleration."""
+        """Set the acceleration at t = 0 from the forces."""
         now, own = self.now, self.balance
         self._hold(now, 0, 0.0)
         past, external = copied(now.forces.past), self._external(0, 0.0)
@@ -147,7 +147,7 @@ class Implicit:
         fill(now.forces, forces)
 
     def _reach(self, n: int, begin: float, end: float, stride: int) -> None:
-        """Go from a share of step n to another, in halves where that does not converge."""
+        """Advance from one fraction of step n to another, in halves if that does not converge."""
         if self._step(n, begin, end):
             return
         self.counts[2] += 1
@@ -164,7 +164,7 @@ class Implicit:
         self._reach(n, middle, end, stride)
 
     def _step(self, n: int, begin: float, end: float) -> bool:
-        """Try a step, and keep its end where it converges."""
+        """Try a step, and keep its result if it converges; return whether it does."""
         alpha_m, alpha_f, beta, gamma = self.scheme
         own, now, dt = self.balance, self.now, (end - begin) * self.dt
         trial, external = copied(now), self._external(n, end)
@@ -197,7 +197,7 @@ class Implicit:
         return outcome.converged
 
     def _factored(self, dt: float, r: float, tangents: np.ndarray) -> Factors:
-        """Return the factors of a step's matrix, the last ones where nothing has changed."""
+        """Return the factors of a step's matrix, the last ones if nothing has changed."""
         if self._factors is not None:
             last, known, factors = self._factors
             if last == dt and np.array_equal(known, tangents):
@@ -211,7 +211,7 @@ class Implicit:
         return found
 
     def _enter(self, trial: Moment, forces: Forces) -> None:
-        """Add the work of all forces over a step by the trapezoidal rule."""
+        """Add the work of all forces over a step to the ledger, by the trapezoidal rule."""
         now, sums, held = self.now, trial.sums, self.problem.held.freedom
         moved = trial.u - now.u
         sums[VISCOUS] += (now.forces.viscous + forces.viscous) @ moved / 2
@@ -223,7 +223,7 @@ class Implicit:
             sums[WORK] += (gained - (now.forces.whole + forces.whole)[held] @ moved[held]) / 2
 
     def _external(self, n: int, share: float) -> np.ndarray:
-        """Return the forces with a history at step n and a share of the next."""
+        """Return the forces with a history at step n plus a fraction of the step."""
         found, forces = np.zeros(self.balance.mass.size), self.problem.forces
         if forces is not None:
             first, last = forces.at(n, n + 2)
@@ -231,7 +231,7 @@ class Implicit:
         return found
 
     def _hold(self, moment: Moment, n: int, share: float) -> None:
-        """Give held freedoms their motion at step n and a share of the next."""
+        """Set the motion of held freedoms at step n plus a fraction of the step."""
         held = self.problem.held
         if held.moved is not None:
             given = (1 - share) * self._motion[:, n] + share * self._motion[:, n + 1]
@@ -239,7 +239,7 @@ class Implicit:
                 values[held.freedom] = value * held.direction
 
     def _record(self, s: int) -> None:
-        """Take sample s."""
+        """Record sample s."""
         now, read, out = self.now, self.problem.readings, self.samples
         forces = now.forces
         out.velocity[:, s] = read.motion @ now.v
@@ -266,8 +266,8 @@ class Implicit:
 
 
 def motion_of(held: Held, count: int, dt: float) -> np.ndarray:
-    """Return displacement, velocity and acceleration of what moves at so many steps [3, count]:
-    sums of the given steps, and centred differences of them, at rest before t = 0."""
+    """Return displacement, velocity and acceleration of held freedoms at `count` steps [3, count]:
+    sums of the given moves and their centred differences, at rest before t = 0."""
     if held.moved is None:
         return np.zeros((3, count))
     after = held.moved(np.arange(count))

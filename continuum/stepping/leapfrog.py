@@ -1,4 +1,4 @@
-"""Explicit steps of a problem: from it to the constants, the state and the forces of the kernel."""
+"""Explicit steps of a problem: constants, state and forces for the kernel."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -26,7 +26,7 @@ from jointwave.continuum.stepping.tractions import history_at_rest
 from jointwave.numerics.cache_lines import zeros
 from jointwave.results.arrays import size_of
 
-BUFFER = 500_000  # numbers: forces with a history that are in memory at a time
+BUFFER = 500_000  # components of forces with a history in memory at a time
 
 
 class Leapfrog:
@@ -34,12 +34,12 @@ class Leapfrog:
 
     Attributes
     ----------
-    state : `arrays.State`, in the places of `product`. samples : what is recorded. dt : s.
-    halo : int array, places of the freedoms of other processes, which follow in vectors.
+    state : `arrays.State`, in the order of `product.place`. samples : recorded ones. dt : s.
+    halo : places of other processes' freedoms, which follow in vectors.
     """
 
     work_of_a_step = 1
-    attributes: ClassVar[dict[str, Any]] = {}  #: that a result has of the steps
+    attributes: ClassVar[dict[str, Any]] = {}  #: of a result
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:
         self.problem, self.dt, body, parts = problem, dt, problem.body, problem.parts
@@ -73,7 +73,7 @@ class Leapfrog:
         self.state = State(zeros(n), zeros(n), zeros(n), *memory)
 
     def take(self, first: int, last: int, stride: int) -> None:
-        """Take the steps first .. last - 1, with a sample at each that `stride` divides."""
+        """Take the steps first .. last - 1, with a sample at each multiple of `stride`."""
         kernel = leapfrog_for(self.flags)
         for begin, drive, moved in self._driven(self.problem, first, last):
             span = begin, begin + len(moved), stride
@@ -82,8 +82,7 @@ class Leapfrog:
     def _driven(
         self, problem: Problem, first: int, last: int
     ) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
-        """Yield the first of some steps, and the forces and the motion in each that have a history,
-        until all are through."""
+        """Yield batches of steps: the first step, and the forces and prescribed moves of each."""
         forces, held = problem.forces, problem.held
         size = max(1, BUFFER // max(1, self.constants.driven.size))
         for begin in range(first, max(last, first + 1), size):
@@ -96,11 +95,11 @@ class Leapfrog:
             yield begin, drive, moved
 
     def whole(self, vector: np.ndarray) -> np.ndarray:
-        """Return the values of the body's freedoms in a vector."""
+        """Return the values of the body's freedoms from a vector."""
         return vector[self.product.place]
 
     def place(self, values: np.ndarray, vector: np.ndarray) -> None:
-        """Put values of the body's freedoms into a vector."""
+        """Set a vector from the values of the body's freedoms."""
         vector[self.product.place] = values
 
     @property
@@ -115,7 +114,7 @@ class Leapfrog:
 
     @property
     def last(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement, m, and velocity, m/s, at the last step, and the displacement by which
+        """Displacement, m, and velocity, m/s, at the last step, and the displacement at which
         elastic rock would have the same stress, m."""
         u, v = self.u - self.dt * self.v, (self.whole(self.state.v_before) + self.v) / 2
         return u, v, self.whole(self.work.strained) if self.flags.relaxing else u
@@ -127,11 +126,11 @@ class Leapfrog:
 
     @property
     def bytes(self) -> int:
-        """The size of constants and state."""
+        """Bytes of constants and state."""
         return size_of(self.constants, self.state, self.work)
 
     def start(self, u: np.ndarray, history: np.ndarray | None = None) -> None:
-        """Begin at rest at displacements u (m), with a history of points."""
+        """Start at rest at displacements u (m), with the history of points."""
         self.place(u, self.state.u)
         if self.flags.relaxing:
             stored = self.constants.memory.relaxed * (u @ (self.problem.body.stiffness @ u)) / 2
@@ -140,7 +139,7 @@ class Leapfrog:
             self.state.history[:] = history
 
     def drop(self, force: np.ndarray) -> None:
-        """Begin at rest under forces (N) that act from t = 0 on, in the middle of a step."""
+        """Set the velocities before t = 0 for rest at t = 0 under forces (N) that start then."""
         fall = 0.5 * self.dt * force / self.problem.body.mass
         fall[self.problem.held.freedom] = 0.0
         self.place(-fall, self.state.v)
@@ -194,14 +193,14 @@ class Leapfrog:
 
 
 def products_for_steps(body: Body) -> tuple[Product, Table]:
-    """Return the products with the stiffness and with the damping, of one kind; the latter is empty
-    without damping."""
+    """Return the product with the stiffness, and the table of the damping (empty without) for a
+    product of the same kind."""
     dim, of_nodes = body.components, (blocks_of_nodes(body), body.x)
     own = product_of(body.stiffness, dim, *of_nodes)
     if not body.damping.nnz:
         return own, Table(np.zeros(0, np.int64), np.zeros(0, np.uint32), np.zeros(0))
     other = product_of(body.damping, dim, *of_nodes)
-    if other.kind == own.kind:  # vectors are then in the same places
+    if other.kind == own.kind:  # then vectors have the same order
         return own, other.table
     n = body.stiffness.shape[0]
     rows = Product(ROWS, table_of(body.stiffness, dim), np.arange(n), n)
@@ -209,7 +208,7 @@ def products_for_steps(body: Body) -> tuple[Product, Table]:
 
 
 def receivers(readings: Readings, place: np.ndarray) -> Readings:
-    """Return readings with matrices as kernels take them, empty ones of what is absent."""
+    """Return readings with a `Table` for each matrix, empty if absent."""
     found: dict[str, Any] = {}
     for name, value in readings._asdict().items():
         if not isinstance(value, np.ndarray):

@@ -1,8 +1,8 @@
-"""Memory variables of rock of a constant quality factor (`cases.material.constant_q`).
+"""Memory variables of rock with a constant quality factor (`cases.material.constant_q`).
 
-Of each relaxation mechanism the spring that is in series with a dashpot has an elongation e_l, a
-vector of freedoms with e_l' = v - omega_l e_l. Over a step of constant velocity that is exactly
-decay e_l + gain v. The force of the rock is K (relaxed u + sum_l share_l e_l), with K of the
+Each relaxation mechanism is a spring in series with a dashpot. The elongation e_l of the spring, a
+vector of freedoms, follows e_l' = v - omega_l e_l; after a step of constant velocity it is exactly
+decay e_l + gain v. The force of the rock is K (relaxed u + sum_l share_l e_l), with K from the
 unrelaxed moduli. In slow motion all e_l are zero.
 """
 
@@ -16,11 +16,11 @@ from jointwave.joints.formula import formula
 
 
 class Memory(NamedTuple):
-    """Mechanisms in steps of one length; without a quality factor there is none of them.
+    """Mechanisms for a given time step; none without a quality factor.
 
-    relaxed : share of K that always resists. share : of each mechanism. spring : the share by which
-    the energy of its spring counts, so that what dashpots take in a step is never negative: omega_l
-    dt share_l of the energy of the mean elongation. decay, gain (s) : of elongations in a step.
+    relaxed : share of K without relaxation. share : of each mechanism. spring : share in the stored
+    energy, chosen so that the dissipation in a step, omega_l dt share_l times the energy of the
+    mean elongation, is never negative. decay, gain (s) : of elongations in a step.
     """
 
     relaxed: float
@@ -30,11 +30,11 @@ class Memory(NamedTuple):
     gain: np.ndarray
 
     def tangent(self, dt: float) -> float:
-        """Return the share of K that resists a displacement within a step (s)."""
+        """Return the share of K that resists a displacement within a step dt (s)."""
         return self.relaxed + float(self.share @ self.gain) / dt
 
     def strained(self, u: np.ndarray, elongation: np.ndarray) -> np.ndarray:
-        """Return the displacement by which elastic rock would have the same stress, m."""
+        """Return the displacement at which elastic rock would have the same stress, m."""
         return self.relaxed * u + self.share @ elongation
 
     def energy(self, stiffness: csr_matrix, u: np.ndarray, elongation: np.ndarray) -> float:
@@ -44,11 +44,11 @@ class Memory(NamedTuple):
 
 
 def memory_of(mechanisms: Mechanisms | None, dt: float) -> Memory:
-    """Return mechanisms in steps dt (s).
+    """Return mechanisms for steps dt (s).
 
-    The work of a spring's force over a step is share_l dt / gain_l (e' - decay_l e) K (e + e') / 2:
-    the change of an energy, with spring_l = share_l x / 2 coth(x / 2) and x = omega_l dt, and a
-    loss.
+    The work of a spring's force over a step, share_l dt / gain_l (e' - decay_l e) K (e + e') / 2,
+    is the change of a stored energy, with spring_l = share_l x / 2 coth(x / 2) and x = omega_l dt,
+    plus a loss.
     """
     if mechanisms is None:
         return Memory(1.0, *np.zeros((4, 0)))
@@ -60,7 +60,7 @@ def memory_of(mechanisms: Mechanisms | None, dt: float) -> Memory:
 
 @formula
 def strain(memory, u, elongation, strained):
-    """Set the displacement by which elastic rock would have the same stress."""
+    """Set the displacement at which elastic rock would have the same stress."""
     for i in range(u.size):
         strained[i] = memory.relaxed * u[i]
     for k in range(memory.share.size):

@@ -1,4 +1,4 @@
-"""Newton's method, and the LU factors of its matrices by PETSc."""
+"""Newton's method, and LU factors by PETSc."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -8,19 +8,19 @@ from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space.fenicsx import PETSc, shared_by
 
-MOST_ITERATIONS = 20  # a joint that closes beyond d_m comes back by half of the way each
-#: Unknowns from which MUMPS outweighs what it costs to call; PETSc's own factors are quicker below.
+MOST_ITERATIONS = 20  # enough for a joint closed beyond d_m, which returns by half the excess each
+#: Unknowns from which MUMPS is faster than PETSc's own factors in spite of its overhead.
 LARGE = 20_000
-SHARED = ("mumps", "superlu_dist")  # that factorise a matrix of several processes
+SHARED = ("mumps", "superlu_dist")  # packages that factorise a matrix of several processes
 
 
 class Factors:
-    """The LU factors of a matrix [n, n], by PETSc; comm : mpi4py's, of processes that share them,
-    each of which has the whole matrix and gets the whole solution, the same on all."""
+    """The LU factors of a matrix [n, n], by PETSc; comm : mpi4py communicator of processes that
+    share them. Each process passes the whole matrix and gets the whole solution."""
 
     def __init__(self, matrix: csr_matrix, comm: Any = None) -> None:
         if comm is not None and hasattr(PETSc, "garbage_cleanup"):
-            PETSc.garbage_cleanup(comm)  # earlier factors: what is shared goes when all agree
+            PETSc.garbage_cleanup(comm)  # earlier factors: shared objects need a collective call
         n, self._comm = matrix.shape[0], comm
         rank, size = (0, 1) if comm is None else (comm.rank, comm.size)
         self._rows = slice(n * rank // size, n * (rank + 1) // size)
@@ -45,7 +45,8 @@ class Factors:
 
 
 def _package(unknowns: int, processes: int) -> str:
-    """Return what factorises a matrix of so many unknowns; of several processes only some do."""
+    """Return the package that factorises a matrix; raises ImportError without one for several
+    processes."""
     there = [one for one in SHARED if PETSc.Sys.hasExternalPackage(one)]
     if processes > 1:
         if not there:
@@ -55,8 +56,8 @@ def _package(unknowns: int, processes: int) -> str:
 
 
 class Outcome(NamedTuple):
-    """Whether the last iterate is a solution, the largest residual of every iterate, the start
-    first, and the tolerance of the last one."""
+    """Whether Newton's method converged, the largest residual of every iterate, from the start on,
+    and the tolerance of the last."""
 
     converged: bool
     errors: list[float]
@@ -68,11 +69,10 @@ def newton(
     correction: Callable[[np.ndarray], np.ndarray],
     start: np.ndarray,
 ) -> Outcome:
-    """Solve by Newton's method from a start, by at least one correction where anything is out of
-    balance.
+    """Solve by Newton's method from a start, with at least one correction unless the residual is 0.
 
-    residual : function of x that returns what is left, and what of it may be, and keeps what it
-    found. correction : function of that which returns by what to move the last x.
+    residual : function of x that returns the residual and its tolerance. correction : function of
+    the residual that returns the correction of the last x.
     """
     x, errors, tolerance = start.copy(), [], 0.0
     for _ in range(MOST_ITERATIONS + 1):

@@ -1,4 +1,4 @@
-"""A body and what acts on it: the problem that explicit and implicit steps solve."""
+"""The problem that explicit and implicit steps solve: a body, its loads and boundaries."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -17,8 +17,8 @@ from jointwave.joints.law import table_of as law_table
 
 
 class Dashpots(NamedTuple):
-    """Nodes on dashpots: node, int array [k]; viscosity, float array [k, d, d], N s/m; springs :
-    those in front of them [k, d], of the time step; None without."""
+    """Dashpots at nodes: node [k]; viscosity [k, d, d], N s/m; springs : function of the time step,
+    springs in front of the dashpots [k, d]; None without."""
 
     node: np.ndarray
     viscosity: np.ndarray
@@ -32,8 +32,8 @@ class Dashpots(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Freedoms whose motion is given: freedom, int array [k], moves by direction [k] times what
-    `moved` returns for steps [n], m from each to the next; None where none moves."""
+    """Freedoms with prescribed motion: freedom [k] moves by direction [k] times moved(steps) [n],
+    m, from each step to the next; moved is None where none moves."""
 
     freedom: np.ndarray
     direction: np.ndarray
@@ -41,10 +41,14 @@ class Held(NamedTuple):
 
 
 class Readings(NamedTuple):
-    """How receivers read a body: motion [m d, freedoms]; stress [rows, freedoms], Pa, compression
-    positive, and what is at u = 0 [rows]; traction [joints d, points d] of forces, Pa/N, and what
-    is at u = 0 [joints d]; jump [joints d, points d]. viscous : stress of the rate by rock's
-    dashpots; inertia : of the acceleration (with mass-proportional damping), None without."""
+    """Matrices of receivers.
+
+    motion : [m d, freedoms]. stress : of displacements [rows, freedoms], Pa/m, compression
+    positive. constant : stress at u = 0 [rows], Pa. traction : of point forces [joints d,
+    points d], Pa/N. carried : traction at u = 0 [joints d], Pa. jump : [joints d, points d].
+    viscous : stress of velocities by the rock's dashpots. inertia : stress of accelerations (with
+    mass-proportional damping), None without.
+    """
 
     motion: csr_matrix
     stress: csr_matrix
@@ -57,21 +61,19 @@ class Readings(NamedTuple):
 
 
 NO_DASHPOTS = Dashpots(np.zeros(0, np.int64), np.zeros((0, 1, 1)))
-#: What receivers read of points, not of freedoms.
+#: Matrices of receivers with columns for points, not freedoms.
 OF_POINTS = ("traction", "jump")
 
 
 class Problem(NamedTuple):
-    """A body and what acts on it.
+    """A body with its joint law, loads and boundaries; absent parts are None.
 
-    law : of its joints, by columns; stiffest : the largest K_n and K_s of each column in reach,
-    Pa/m, a number or an array. stress : float array [d, d], Pa, compression positive, that rock
-    and joints bear at u = 0. alpha : of mass-proportional damping, 1/s. mechanisms : of the
-    relaxation of rock, whose stiffness is then the unrelaxed one. steady : float array [freedoms],
-    N. forces : with a history, of `freedom`, int array [k]: `at(first, last)` returns those of
-    steps [steps, k], N, and `impulse` is as of `loads.forces.Loads`. comm : mpi4py's, of processes
-    that share the run. counted : points whose energies a process counts, the first ones; None of
-    all. Absent parts are None.
+    law : of the joints, in columns. stiffest : largest K_n and K_s in reach of each column, Pa/m,
+    numbers or arrays. stress : in rock and joints at u = 0 [d, d], Pa, compression positive. alpha
+    : of mass-proportional damping, 1/s. mechanisms : of the relaxation of rock, whose stiffness is
+    then unrelaxed. steady : constant forces [freedoms], N. forces : with a history, as
+    `loads.forces.Loads`. comm : mpi4py communicator of processes that share the run. counted :
+    number of points, the first ones, whose energies this process counts; None for all.
     """
 
     body: Body
@@ -96,7 +98,7 @@ class Problem(NamedTuple):
         return parts_of(self.law)._replace(planar=self.body.components == 2)
 
     def of_joints(self, normal: Any, shear: Any) -> csr_matrix:
-        """Return B^T W k B of normal and shear values k of each column, or one of all."""
+        """Return B^T W k B from normal and shear values k, numbers or one for each column."""
         joints, dim = self.body.joints, self.body.components
         if not len(joints.weight):
             return csr_matrix(self.body.stiffness.shape)
@@ -108,8 +110,7 @@ class Problem(NamedTuple):
 
     @property
     def stiffness(self) -> csr_matrix:
-        """The stiffness of rock and joints, closed as far as is in reach, N/m, and of springs of
-        sides."""
+        """The stiffness of rock, joints (at the largest closure in reach) and side springs, N/m."""
         found = self.body.stiffness
         if self.law is not None:
             found = csr_matrix(found + self.of_joints(*self.stiffest))
@@ -121,7 +122,7 @@ class Problem(NamedTuple):
 
     @property
     def viscosity(self) -> csr_matrix:
-        """The viscosity of rock and joints, N s/m; without entries where there are no dashpots."""
+        """The viscosity of rock and joints, N s/m; without entries if there are no dashpots."""
         law, found = self.law, self.body.damping
         if law is not None and law.normal_viscosity is not None:
             joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
@@ -131,8 +132,8 @@ class Problem(NamedTuple):
     def critical_step(self) -> float:
         """Return the critical step of leapfrog, s.
 
-        The search starts from a motion that has something of every mode, the same however nodes are
-        numbered; both sides of a joint differ by the middles of their blocks.
+        The search starts from a motion that contains all modes and does not depend on the numbering
+        of nodes; it differs between the sides of a joint by the centres of their blocks.
         """
         body, block = self.body, blocks_of_nodes(self.body)
         x, count = body.x - body.x.min(axis=0), np.maximum(np.bincount(block), 1)
@@ -143,7 +144,7 @@ class Problem(NamedTuple):
         return critical_step(body.mass, self.stiffness, self.viscosity, self.held.freedom, start)
 
     def points(self) -> Points:
-        """Return the points of the joints as kernels take them."""
+        """Return the points of the joints for kernels."""
         joints = self.body.joints
         if self.law is None:
             none = np.zeros(0)

@@ -1,8 +1,8 @@
 """The product of a symmetric matrix with a vector of freedoms, chosen by the matrix's structure.
 
-Blocks that are all alike share one matrix, which is applied to many of them at a time: entries are
-read once for `LANES` blocks. Else rows of d freedoms a node are multiplied together, with 32-bit
-indices; beyond the cache only the half on and above the diagonal is read.
+Equal blocks share one matrix, whose entries are read once for `LANES` blocks. Otherwise the d rows
+of a node are multiplied together, with 32-bit indices; of a matrix beyond the cache only the half
+on and above the diagonal is read.
 """
 
 from collections.abc import Callable
@@ -14,18 +14,18 @@ from scipy.sparse import bsr_matrix, csr_matrix
 
 from jointwave.joints.formula import formula
 
-LANES = 32  # blocks whose freedoms lie side by side
-LEAST_BLOCKS = 12  # that share a matrix with profit
-SAME = 1e-12  # of the largest entry: by how much the matrices of equal blocks may differ
-CACHE = 8 << 20  # bytes of a matrix from which on memory decides
+LANES = 32  # blocks with interleaved freedoms
+LEAST_BLOCKS = 12  # from which a shared matrix is faster
+SAME = 1e-12  # difference of the matrices of equal blocks, over the largest entry
+CACHE = 8 << 20  # bytes of a matrix from which memory bandwidth limits the product
 
 ROWS, HALF, SHARED = "rows", "half", "shared"
 
 
 class Table(NamedTuple):
-    """A matrix as kernels take it: rows, or of `HALF` and `SHARED` their numbers, CSR.
+    """A matrix for kernels in CSR form, by rows of nodes or for `SHARED` of freedoms.
 
-    start : int64 array [rows + 1]. column : uint32 array. value : float array.
+    start : int64 [rows + 1]. column : uint32. value : float.
     """
 
     start: np.ndarray
@@ -34,8 +34,8 @@ class Table(NamedTuple):
 
 
 class Product(NamedTuple):
-    """kind : ROWS, HALF or SHARED. table : as its formula takes it. place : int array [freedoms],
-    where each freedom of the body is in vectors; others of the first `size` there are padding."""
+    """A product: kind : ROWS, HALF or SHARED. table : the matrix. place : place of each freedom of
+    the body in vectors [freedoms]; other places below `size` are padding."""
 
     kind: str
     table: Table
@@ -44,18 +44,18 @@ class Product(NamedTuple):
 
     @property
     def stride(self) -> int:
-        """How far the freedoms of a node are apart in vectors."""
+        """Distance of the freedoms of a node in vectors."""
         return stride_of(self.kind)
 
     def beyond(self, count: int, dim: int) -> np.ndarray:
-        """Return where further freedoms are, int array [count], behind all others: d of a node."""
+        """Return the places of `count` more freedoms, `dim` a node, after all others [count]."""
         node, component = np.divmod(np.arange(count), dim)
         tile, lane = np.divmod(node, self.stride)
         return self.size + (tile * dim + component) * self.stride + lane
 
 
 def stride_of(kind: str) -> int:
-    """Return how far the freedoms of a node are apart in vectors of a kind of product."""
+    """Return the distance of the freedoms of a node in vectors of a kind of product."""
     return LANES if kind == SHARED else 1
 
 
@@ -67,10 +67,10 @@ def table_of(matrix: csr_matrix, dim: int) -> Table:
 
 
 def product_of(matrix: csr_matrix, dim: int, block: np.ndarray, x: np.ndarray) -> Product:
-    """Return the product with a matrix [freedoms, freedoms], whose place and size all vectors take.
+    """Return the product with a matrix [freedoms, freedoms]; it defines the order of all vectors.
 
-    block : int array [nodes], of each. x : float array [nodes, d], m. Columns beyond the rows are
-    freedoms of other processes: they follow in vectors.
+    block : of each node [nodes]. x : [nodes, d], m. Columns beyond the rows are freedoms of other
+    processes, which follow in vectors.
     """
     shared = shared_by_blocks(matrix, dim, block, x)
     if shared is not None:
@@ -89,7 +89,7 @@ def product_of(matrix: csr_matrix, dim: int, block: np.ndarray, x: np.ndarray) -
 def shared_by_blocks(
     matrix: csr_matrix, dim: int, block: np.ndarray, x: np.ndarray
 ) -> Product | None:
-    """Return the product with a matrix that all blocks share; None where they differ."""
+    """Return the product with a matrix that all blocks share; None if they differ."""
     count, nodes = int(block.max(initial=-1)) + 1, np.bincount(block)
     if count < LEAST_BLOCKS or nodes.min() != nodes.max():
         return None
@@ -101,7 +101,7 @@ def shared_by_blocks(
     own = csr_matrix(matrix[freedoms][:, freedoms])
     own.sum_duplicates()
     m = dim * nodes[0]
-    if own.nnz < matrix.nnz:  # of blocks that other processes have a part of
+    if own.nnz < matrix.nnz:  # another process has a part of some block
         return None
     if np.ptp(np.diff(own.indptr).reshape(count, m), axis=0).any():
         return None
@@ -118,7 +118,7 @@ def shared_by_blocks(
 
 
 def in_fours(start: np.ndarray, column: np.ndarray, value: np.ndarray) -> Table:
-    """Return a matrix whose rows are filled up to multiples of four entries with zeros."""
+    """Return a matrix with rows padded to multiples of four entries by zeros."""
     count = np.diff(start)
     filled = np.maximum(-(-count // 4), 1) * 4
     first = np.append(0, filled.cumsum())
@@ -130,14 +130,13 @@ def in_fours(start: np.ndarray, column: np.ndarray, value: np.ndarray) -> Table:
 
 @cache
 def product_for(kind: str, dim: int) -> Callable[..., None]:
-    """Return the formula (table, x, product) that sets the product of a matrix of this kind and a
-    vector, with its sign changed: a force."""
+    """Return the formula (table, x, product) that sets product = -A x, a force, for this kind."""
     formulas: dict[str, Any] = {ROWS: rows_for, HALF: half_for, SHARED: shared_for}
     return formulas[kind](dim)
 
 
 def rows_for(dim: int) -> Callable[..., None]:
-    """Return the formula of rows of nodes."""
+    """Return the formula for rows of nodes."""
     of_node, plane, space = dim * dim, dim > 1, dim > 2
 
     @formula
@@ -168,7 +167,7 @@ def rows_for(dim: int) -> Callable[..., None]:
 
 
 def half_for(dim: int) -> Callable[..., None]:
-    """Return the formula of the half on and above the diagonal, which begins each row."""
+    """Return the formula for the half on and above the diagonal; rows start with the diagonal."""
     of_node, plane, space = dim * dim, dim > 1, dim > 2
 
     @formula
@@ -185,7 +184,7 @@ def half_for(dim: int) -> Callable[..., None]:
                 z = x[o + 2]
             for k in range(first, table.start[i + 1]):
                 j, p = dim * column[k], of_node * k
-                # Of the diagonal the rows alone count.
+                # The diagonal block acts once: not in its transpose.
                 u, v, w = x[o] if k > first else 0.0, y, z
                 if k == first:
                     v, w = 0.0, 0.0
@@ -214,7 +213,7 @@ def half_for(dim: int) -> Callable[..., None]:
 
 
 def shared_for(dim: int) -> Callable[..., None]:
-    """Return the formula of the matrix that all blocks share, in fours of entries."""
+    """Return the formula for a matrix that all blocks share, four entries at a time."""
 
     @formula
     def shared(table, x, product):
@@ -224,7 +223,7 @@ def shared_for(dim: int) -> Callable[..., None]:
             tile = x[first : first + m * LANES]
             for i in range(m):
                 own = product[first + i * LANES : first + (i + 1) * LANES]
-                for k in range(start[i], start[i + 1], 4):  # sums are stored once for four
+                for k in range(start[i], start[i + 1], 4):  # one store for four entries
                     a, b, d, e = value[k], value[k + 1], value[k + 2], value[k + 3]
                     p = tile[np.int64(column[k]) * LANES :]
                     q = tile[np.int64(column[k + 1]) * LANES :]

@@ -1,16 +1,17 @@
-"""Mass that is added at the nodes of a few small cells, which would decide the step of all rock.
+"""Mass scaling: added mass at the nodes of a few small cells that would limit the time step.
 
-Slivers between planes of joints have cells much smaller than the rest. A step dt is stable where
+Slivers between joint planes have cells much smaller than the rest. A step dt is stable if
 
     sum_j |dt^2 K_ij + 4 dt C_ij| <= 4 m_i
 
-for every freedom i, by Gershgorin's theorem on M^-1 (dt^2 K + 4 dt C) (`stepping.critical`). Where
-a row lacks mass for a longer step, it is added, as much in each direction.
+for every freedom i, by Gershgorin's theorem on M^-1 (dt^2 K + 4 dt C) (`stepping.critical`). Mass
+that a row lacks for a longer step is added, equally in each direction.
 
-A mass M in rock of density rho scatters about pi M / (rho l^d) of a wave of length l, as it is one
-wavelength away: in one, two and three dimensions, by the first term of Born's series. All that is
-added is at most `OF_ALL` of the rock, 3e-4 of a wave where small cells lie anywhere; and at most
-`OF_PIECE` of any piece of rock between joints, which bounds the error of its acceleration.
+An added mass M in rock of density rho scatters about pi M / (rho l^d) of a wave of length l, at one
+wavelength, in one, two and three dimensions, by the first term of Born's series. The sum of added
+mass is at most `OF_ALL` of the rock, so that 3e-4 of a wave is scattered if small cells lie
+anywhere; and at most `OF_PIECE` of any piece of rock between joints, which bounds the error of its
+acceleration.
 """
 
 from typing import NamedTuple
@@ -21,16 +22,16 @@ from scipy.sparse.csgraph import connected_components
 
 from jointwave.continuum.stepping.problem import Problem
 
-OF_ALL, OF_PIECE = 1e-4, 1e-2  # most mass that is added, of all rock, and of a piece
-WORTH = 2.0  # times as long a step by these bounds, below which mass stays as it is
-HALVINGS = 30  # of the range of steps in search of the longest
+OF_ALL, OF_PIECE = 1e-4, 1e-2  # most added mass, over that of all rock, and of a piece
+WORTH = 2.0  # least gain of the step for which mass is added
+HALVINGS = 30  # of the range of steps, in the search for the longest
 
 
 class Scaled(NamedTuple):
     """Mass for longer steps.
 
-    mass : float array [freedoms], kg. nodes : how many have more. share : that is added, of all.
-    before : the critical step without it is at most this, s.
+    mass : [freedoms], kg. nodes : number of nodes with added mass. share : added mass over all
+    mass. before : upper bound of the critical step without added mass, s.
     """
 
     mass: np.ndarray
@@ -39,7 +40,7 @@ class Scaled(NamedTuple):
     before: float
 
     def gained(self, critical: float) -> str:
-        """Return what is gained where the critical step is this, s."""
+        """Return a message on the gain, given the new critical step, s."""
         return (
             f"{self.nodes:,} nodes of cells much smaller than the rest have more mass, "
             f"{self.share:.1g} of all rock: steps are at least {critical / self.before:.2g} "
@@ -48,7 +49,7 @@ class Scaled(NamedTuple):
 
 
 def scaled_mass(problem: Problem) -> Scaled | None:
-    """Return the mass of a body with what small cells lack; None where that is not worth it."""
+    """Return the scaled mass of a problem; None if the gain is too small."""
     body, matrices = problem.body, (problem.stiffness, problem.viscosity)
     mass = body.mass.reshape(-1, body.components)
     elastic, viscous = (_sums(problem, one, mass.shape) for one in matrices)
@@ -56,7 +57,7 @@ def scaled_mass(problem: Problem) -> Scaled | None:
     of_piece = np.bincount(piece, body.mass)
 
     def lacking(dt: float) -> np.ndarray:
-        """Return what each node lacks for a step, kg [nodes]."""
+        """Return the mass that each node lacks for a step [nodes], kg."""
         need = dt**2 / 4 * elastic + dt * viscous - mass
         return np.maximum(need, 0.0).max(axis=1)
 
@@ -80,7 +81,7 @@ def scaled_mass(problem: Problem) -> Scaled | None:
 
 
 def _sums(problem: Problem, matrix: csr_matrix, shape: tuple[int, ...]) -> np.ndarray:
-    """Return sums of the absolute values of rows [nodes, d], 0 where the motion is given."""
+    """Return the row sums of absolute values [nodes, d], 0 for prescribed motion."""
     found = np.asarray(abs(matrix).sum(axis=1)).reshape(shape)
     found.reshape(-1)[problem.held.freedom] = 0.0
     return found

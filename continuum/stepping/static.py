@@ -1,14 +1,13 @@
 """Static states: rock and joints at rest under gravity and around openings, by Newton's method.
 
 Forces are applied in increments, halved if they do not converge, because the state of joints that
-slide, open or break depends on the path. Where that ends, as among joints that open and bear on
-their edges, the rock creeps on under the whole forces against a drag, mass times 1/s2, that falls
-until it is next to nothing (the proximal point method; Rockafellar, SIAM J. Control Optim. 14,
-1976): what stands stops.
+slide, open or break depends on the path. If the smallest increments fail, as among joints that open
+and bear on their edges, the rock creeps under the full forces against a drag, mass times 1/s2, that
+falls to almost zero (the proximal point method; Rockafellar, SIAM J. Control Optim. 14, 1976). It
+stops if a static state exists.
 
-Quiet sides that bear the weight are held by springs far stiffer than the rock. Rock that no side
-holds is at rest wherever it is put: a mass matrix that is next to nothing beside the stiffness then
-makes Newton's matrix regular. It regularises the matrix, not the forces.
+Quiet sides that bear the weight are held by springs far stiffer than the rock. For rock that no
+side holds, a tiny multiple of the mass matrix regularises Newton's matrix, not the residual.
 """
 
 from typing import NamedTuple
@@ -24,21 +23,21 @@ from jointwave.continuum.stepping.problem import NO_DASHPOTS, Problem
 from jointwave.joints.law import IN_MOTION, Law
 
 TOLERANCE = 1e-10  # of the residual, over the largest summed force
-LEAST_PART = 2.0**-4  # of the steady forces
-CREEP = 1e-2  # the first drag, of the largest stiffness over mass, above all modes of joints
-MOST_LEFT = 1e-8  # of the last digits of displacements, over the largest summed force
-ROUGH = 1e-3  # residual of a step against a drag, over what the drag bears
-EASED = 8.0  # by which the drag falls after a step, and rises after one that does not converge
+LEAST_PART = 2.0**-4  # smallest increment, over the steady forces
+CREEP = 1e-2  # first drag, over the largest stiffness per mass: above all modes of joints
+MOST_LEFT = 1e-8  # most residual due to round-off of displacements, over the largest summed force
+ROUGH = 1e-3  # residual of a step against a drag, over the force of the drag
+EASED = 8.0  # factor by which the drag falls after a step, or rises if one does not converge
 MOST_CREEPS = 400  # steps against a drag
-LEAST_DRAG = 1e-14  # above round-off
-PATIENCE = 8  # of these without progress, and at least as many as led there: a stall
-LOOSE = 1e-10  # of the largest stiffness over mass: what holds loose rock
-STIFF = 1e3  # of the largest stiffness: what holds sides that bear the weight
+LEAST_DRAG = 1e-14  # as CREEP; above round-off
+PATIENCE = 8  # steps without progress, and at least as many as led there, that are a stall
+LOOSE = 1e-10  # stiffness per mass that holds loose rock, over the largest one
+STIFF = 1e3  # stiffness that holds sides that bear the weight, over the largest one
 
 
 class Rest(NamedTuple):
-    """A static state: u, m [freedoms]; history of points; steps, corrections made; ratio, the
-    largest unbalanced force over the largest force at work."""
+    """A static state: u [freedoms], m; history of points; steps, number of corrections; ratio of
+    the largest unbalanced force to the largest summed force."""
 
     u: np.ndarray
     history: np.ndarray
@@ -47,8 +46,8 @@ class Rest(NamedTuple):
 
 
 def holding(problem: Problem, borne: csr_matrix | None) -> csr_matrix | None:
-    """Return the springs (N/m) that hold areas [freedoms, freedoms] of sides that bear the weight;
-    None without."""
+    """Return the springs [freedoms, freedoms], N/m, that hold sides which bear the weight; None
+    without. borne : their areas."""
     if borne is None:
         return None
     stiffest = float(problem.body.stiffness.diagonal().max())
@@ -56,7 +55,7 @@ def holding(problem: Problem, borne: csr_matrix | None) -> csr_matrix | None:
 
 
 def elastic_rest(problem: Problem, weight: np.ndarray, hold: csr_matrix | None) -> np.ndarray:
-    """Return the displacements [freedoms] (m) at rest under a weight (N) where no joint opens or
+    """Return the displacements at rest [freedoms], m, under a weight (N) if no joint opens or
     slips."""
     own, u = _Static(problem, hold), np.zeros_like(weight)
     free = own.balance.free
@@ -65,14 +64,14 @@ def elastic_rest(problem: Problem, weight: np.ndarray, hold: csr_matrix | None) 
 
 
 def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -> Rest:
-    """Return the state at rest under the steady forces of a problem, on springs `holding`; raises
-    SceneError where there is none."""
+    """Return the static state under the steady forces of a problem; raises SceneError if there is
+    none. hold : springs of `holding`."""
     own, done, part, steps, still = _Static(problem, hold), 0.0, 1.0, 0, False
     while not still:
         outcome = own.settle(min(done + part, 1.0))
         steps += len(outcome.errors) - 1
         if outcome.converged:
-            # A point that slips loses its cohesion for what follows: balanced again without it.
+            # A point that slips loses its cohesion only afterwards: balance again without it.
             still = done >= 1 and outcome.errors[0] <= outcome.tolerance
             done = min(done + part, 1.0)
             still = still or (done == 1 and problem.parts is None)
@@ -85,11 +84,10 @@ def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -
 
 
 def _creep(scene: AnyScene, own: "_Static", done: float) -> tuple[Outcome, int]:
-    """Let the rock creep to rest under all of its forces; return the last step, which found it
-    there, and the corrections made.
+    """Let the rock creep to rest under its full forces; return the outcome of the last step and the
+    number of corrections.
 
-    Raises SceneError where rock moves farther than it is large, or the unbalanced forces stop
-    falling.
+    Raises SceneError if rock moves farther than its size, or the unbalanced forces stop falling.
     """
     drag, least, corrections = CREEP * own.stiffest, LEAST_DRAG * own.stiffest, 0
     best, best_at, moves, far = np.inf, 0, 0, False
@@ -97,7 +95,7 @@ def _creep(scene: AnyScene, own: "_Static", done: float) -> tuple[Outcome, int]:
     for k in range(MOST_CREEPS):
         outcome = own.settle(1.0, drag)
         corrections += len(outcome.errors) - 1
-        unbalanced = outcome.errors[0]  # before the step, as nothing drags yet
+        unbalanced = outcome.errors[0]  # before the step, where the drag is zero
         if outcome.converged and unbalanced <= own.allowed:
             return outcome, corrections
         if unbalanced < 0.9 * best:
@@ -116,7 +114,7 @@ def _creep(scene: AnyScene, own: "_Static", done: float) -> tuple[Outcome, int]:
 
 
 def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
-    """Return the refusal of a scene: `what` of its weight or excavation, and why."""
+    """Return the error of a scene: `what` about its weight or excavation, and why."""
     key, of, remedy = "gravity", "the weight", "static = false starts without it"
     if scene.excavated and (scene.gravity is None or not scene.gravity.static):
         key, of, remedy = "prestress", "the excavation", "the joints around it cannot carry it"
@@ -124,7 +122,7 @@ def _refusal(scene: AnyScene, what: str, why: str) -> SceneError:
 
 
 def _at_rest(problem: Problem) -> Problem:
-    """Return a problem without what resists motion: with relaxed rock, and no dashpots."""
+    """Return a problem with relaxed rock and without dashpots."""
     law, relaxes, none = problem.law, problem.mechanisms, csr_matrix(problem.body.damping.shape)
     body = problem.body._replace(damping=none)
     if relaxes is not None:
@@ -137,11 +135,11 @@ def _at_rest(problem: Problem) -> Problem:
 
 
 class _Static:
-    """The forces of a problem at rest, without what absorbs and without loads.
+    """The static forces of a problem, without dashpots and loads.
 
-    u, past : the last state in balance. size : the largest force that is summed up, N.
-    stiffest : the largest stiffness over mass, 1/s2. allowed : what may be left, N. moved : of the
-    last step under a drag, m/s2.
+    u, past : the last state in balance. size : the largest summed force, N. stiffest : the largest
+    stiffness per mass, 1/s2. allowed : tolerance of the residual, N. moved : displacement times
+    drag in the last step, m/s2.
     """
 
     def __init__(self, problem: Problem, hold: csr_matrix | None) -> None:
@@ -161,8 +159,8 @@ class _Static:
         self.moved = np.zeros_like(k)
 
     def settle(self, share: float, drag: float = 0.0) -> Outcome:
-        """Try to balance a share of the steady forces against a drag (1/s2) on what moves from the
-        state before; what comes of it is kept where that succeeds."""
+        """Try to balance a share of the steady forces, with a drag (1/s2) on displacements from the
+        last state, and keep the new state if this converges."""
         own, free, still = self.balance, self.balance.free, np.zeros_like(self.u)
         trial, after = self.u.copy(), self.past
 
@@ -183,7 +181,7 @@ class _Static:
         def correction(rest: np.ndarray) -> np.ndarray:
             matrix = self.matrix + drag * diags(own.mass)
             if not trial.any() and own.steady[free].any():
-                # First as if no joint opened or slid: then what stands is found.
+                # First without opening or sliding, which leads to the static state if one exists.
                 return own.factors(matrix + self.sticking).solve(share * own.steady[free])
             tangents = own.of_joints(trial, still, 1.0, 0.0, self.past.history)
             return own.factors(matrix, tangents).solve(rest)
@@ -195,8 +193,8 @@ class _Static:
         return outcome
 
     def fastest(self) -> str:
-        """Return where the rock has moved farthest in the last step, in words, with the
-        acceleration that the forces borne by the drag would give it."""
+        """Return in words where the rock moved farthest in the last step, and the acceleration that
+        it would have without the drag."""
         k, body = int(np.abs(self.moved).argmax()), self.problem.body
         place = ", ".join(f"{x:.4g}" for x in body.x[k // body.components].round(6) + 0.0)
         return f"the rock at [{place}] moves on, at {np.abs(self.moved[k]):.3g} m/s2"

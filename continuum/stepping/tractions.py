@@ -2,7 +2,7 @@
 
 Vectors of points are [points * d], the d components of each in its frame, normal first. With the
 jump operator B and the areas W of the points the force on the freedoms is B^T W t, where t is the
-traction on the side that the normal points to, compression positive.
+traction on the side to which the normal points, compression positive.
 """
 
 from collections.abc import Callable
@@ -17,18 +17,18 @@ from jointwave.joints.normal import gap_under
 from jointwave.joints.tangent import tangent_for
 from jointwave.numerics.jit import jitted
 
-#: Rows of the history of points [rows, points]: of `joints.law.History`, what has slid in two.
+#: Rows of the history of points [rows, points], the fields of `joints.law.History`.
 OPENING, SLIDE, COHESION, PATH = 0, 1, 3, 4
 ROWS = 5
 
 
 class Points(NamedTuple):
-    """The points of joints, as kernels take them.
+    """The points of joints, for kernels.
 
-    weight : float array [points], m^(d-1). column : int array [points], of the law's table.
-    table : `joints.law.table_of`. carried : float array [points * d], tractions (Pa) that points
-    and the rock between them carry at u = 0; [0] without a prestress. counted : points whose
-    energies count, the first ones; other processes count those of the others.
+    weight : area [points], m^(d-1). column : of the law's table [points]. table :
+    `joints.law.table_of`. carried : tractions at u = 0, balanced by the rock [points * d], Pa; [0]
+    without a prestress. counted : number of points, the first ones, whose energies this process
+    counts.
     """
 
     weight: np.ndarray
@@ -40,7 +40,7 @@ class Points(NamedTuple):
 
 @formula
 def components(dim, values, q):
-    """Return the components (n, x, z) of a vector at a point, 0 for those that are absent."""
+    """Return the components (n, x, z) of a vector at a point; absent ones are 0."""
     n, x, z = values[dim * q], 0.0, 0.0
     if dim > 1:
         x = values[dim * q + 1]
@@ -69,8 +69,8 @@ def history_at(before, q):
 
 
 def strained_for(parts: LawFlags, dim: int) -> Callable:
-    """Return the formula of the jump of a point that carries tractions at u = 0: the springs are
-    strained by them. What has slid holds those along the joint where it can slide."""
+    """Return the formula of the jump that includes the strain of the springs at u = 0. Where joints
+    can slide, their history includes that of the shear springs."""
     limited = parts.limited
 
     @formula
@@ -87,19 +87,18 @@ def strained_for(parts: LawFlags, dim: int) -> Callable:
 
 @cache
 def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
-    """Return the formula of the forces of joints of a law with these parts in d dimensions;
-    stressed : whether they carry anything at u = 0."""
+    """Return the formula of the forces of joints with these parts of the law; stressed : whether
+    they carry tractions at u = 0."""
     dashpots, limited, remembers = parts.dashpots, parts.limited, has_history(parts)
     strained, traction = strained_for(parts, dim), traction_for(parts.shear, parts.path)
 
     @formula
     def tractions(points, dt, jump, moved, rate, before, after, force, drag):
-        """Set the forces W t (N) of all points less what they carry at u = 0, those of dashpots
-        apart, and the history; return friction's work in this step, and what springs store and
-        opening has spent (J).
+        """Set the forces W t (N) of all points less those at u = 0, dashpot forces separately, and
+        the history; return the work of friction in this step, stored and fracture energy (J).
 
-        jump, m; moved : its increments over the step, m, where joints slip; rate : of the jump,
-        m/s, where they have dashpots. before, after : histories, which may be one.
+        jump : m. moved : its increments over the step, m, where joints slip. rate : of the jump,
+        m/s, where they have dashpots. before, after : histories, which may be the same array.
         """
         slid, stored, spent = 0.0, 0.0, 0.0
         history, step, now = History(0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -139,13 +138,12 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
 
 
 def has_history(parts: LawFlags) -> bool:
-    """Return whether points of a law with these parts remember anything."""
+    """Return whether points of a law with these parts have a history."""
     return parts.softening or parts.limited or parts.residual or parts.path
 
 
 def history_at_rest(points: Points, parts: LawFlags, dim: int) -> np.ndarray:
-    """Return the history of all points at the start, [rows, points]; [rows, 0] where there is
-    none."""
+    """Return the initial history of all points [rows, points]; [rows, 0] without a history."""
     count = points.weight.size if has_history(parts) else 0
     history = np.zeros((ROWS, count))
     law = law_of(points.table, points.column[:count])
@@ -175,8 +173,8 @@ def tangents_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
     strained, tangent = strained_for(parts, dim), tangent_for(parts.shear, parts.path)
 
     def tangents(points, dt, r, jump, rate, before, stiffness):
-        """Set how each point resists displacement [points, d, d], N/m: minus the derivatives of
-        its forces with its jump. r : rate factor, 1/s (`joints.tangent`)."""
+        """Set the tangent stiffness of each point [points, d, d], N/m: minus the derivatives of its
+        forces with respect to its jump. r : rate factor, 1/s (`joints.tangent`)."""
         history, now = History(0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         for q in range(points.weight.size):
             law, w = law_of(points.table, points.column[q]), points.weight[q]
