@@ -49,10 +49,7 @@ def require(value: object, kind: Any, where: str, key: str, allowed: str) -> Non
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return "; did you mean ...?" for the likely intended name, or "".
-
-    The last part of a name with folders is enough.
-    """
+    """Return "; did you mean ...?" for the likely name, whose last part is enough, or ""."""
     names = list(known)
     ends = {one.rpartition("/")[2]: one for one in reversed(names)}
     folded = {one.casefold(): one for one in [*ends, *names]}

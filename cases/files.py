@@ -41,7 +41,7 @@ def read_bytes(path: Path, largest: int, times: int) -> bytes:
 
 def size_of(path: Path) -> int:
     """Return the size of a regular file, bytes. Raises ValueError, in one phrase, for anything
-    else: reading a pipe would block."""
+    else, as reading a pipe would block."""
     try:
         if path.is_dir():
             raise ValueError("is a directory, must be a file")

@@ -65,8 +65,7 @@ class LoadHistory:
 
 @dataclass(frozen=True)
 class Sine(LoadHistory):
-    """Cycles of p0 sin(2 pi t / T), zero before and after (Guo & Li 2002, fig. 2); 0.5 cycles are a
-    half sine."""
+    """Cycles of p0 sin(2 pi t / T), zero elsewhere (Guo & Li 2002, fig. 2); 0.5: a half sine."""
 
     amplitude: float
     period: float
@@ -92,9 +91,7 @@ class Sine(LoadHistory):
 @dataclass(frozen=True)
 class Ricker(LoadHistory):
     """p0 (1 - 2 a) exp(-a), a = (pi (t - 1.5 T) / T)^2: a Ricker wavelet of peak frequency 1 / T.
-
-    Its centre is 1.5 T; before t = 0 and after `end` it is below 1e-8 of the peak.
-    """
+    Its centre is 1.5 T; before t = 0 and after `end` it is below 1e-8 of the peak."""
 
     amplitude: float
     period: float

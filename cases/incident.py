@@ -106,10 +106,8 @@ class FreeField(PlaneWaves):
 
 
 def free_field(scene: RockMass) -> FreeField:
-    """Return the field of all waves of a scene in rock without joints.
-
-    Raises SceneError if waves cross several regions of rock, where they do not stay plane.
-    """
+    """Return the field of all waves of a scene in rock without joints. Raises SceneError if waves
+    cross several regions of rock, where they do not stay plane."""
     if scene.waves and scene.regions:
         allowed = "cross several rocks: give their field (compare.exact.rock_mass.field.field_of)"
         raise SceneError(scene.where, "waves", len(scene.waves), allowed)

@@ -183,10 +183,7 @@ def shortest_wave(scene: Scene, p: Properties) -> ShortestWave | None:
 
 def highest_frequency(scene: AnyScene) -> float | None:
     """Return the frequency (Hz) below which 95 % of the energy of each load or wave lies; None
-    without.
-
-    A step is taken until the end of the scene, a shaken base by its velocity.
-    """
+    without. A step is taken until the end of the scene, a shaken base by its velocity."""
     found = (frequency_of(one, scene.time.duration) for one in scene.pulses)
     return max((one for one in found if one is not None), default=None)
 

@@ -114,8 +114,7 @@ def _of_law(table: str, law: Any) -> Iterator[str]:
 
 
 def of_dip(key: str, dip: float) -> Iterator[str]:
-    """Yield a line if a dip is probably in radians: at most a right angle in radians, and no
-    multiple of a quarter degree."""
+    """Yield a line if a dip is probably in radians: small, and no multiple of a quarter degree."""
     if 0 < abs(dip) <= radians(90.01) and dip % 0.25:
         yield f"{key} = {dip:g} degrees: {dip:g} rad is {degrees(dip):.4g} degrees"
 

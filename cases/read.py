@@ -64,10 +64,8 @@ def load_variant(
 def load_tables(
     tables: dict[str, Any], name: str = "", overrides: dict[str, Any] | None = None
 ) -> AnyScene:
-    """Return one variant of a scene from the tables of its file, or of a result.
-
-    Files that it names lie in the working folder or below.
-    """
+    """Return one variant of a scene from the tables of its file, or of a result. Files that it
+    names lie in the working folder or below."""
     return _Tables(deepcopy(tables), Path("scene"), overrides or {}).named(name)
 
 
@@ -124,8 +122,7 @@ def _of_file(path: str | Path, overrides: dict[str, Any] | None, asked: bool = T
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Parse `key=value`; parts of the key may be quoted, and a value that is not TOML is a
-    string."""
+    """Parse `key=value`; parts of the key may be quoted, a value that is not TOML is a string."""
     key, equals, value = text.partition("=")
     key = re.sub("[\"']", "", key)
     if not equals or not key.strip():

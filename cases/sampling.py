@@ -74,8 +74,7 @@ class Interpolation(NamedTuple):
 
 
 def interpolation(nodes: np.ndarray, places: list[float]) -> Interpolation:
-    """Return the interpolation from sorted `nodes` [n] (m) to `places` (m); beyond the outermost
-    nodes the outermost value holds."""
+    """Return the interpolation from sorted `nodes` [n], m, to `places`, m; constant outside."""
     at = np.asarray(places, dtype=float)
     right = np.clip(np.searchsorted(nodes, at - 1e-9 * nodes[-1]), 1, max(1, len(nodes) - 1))
     left = right - 1

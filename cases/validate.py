@@ -43,10 +43,8 @@ ALLOWED = {
 
 
 def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
-    """Return a table as a scene; given : keys and tables that the user gave directly.
-
-    Raises SceneError, one line per mistake, for an invalid scene.
-    """
+    """Return a table as a scene; given : keys and tables that the user gave directly. Raises
+    SceneError, one line per mistake, for an invalid scene."""
     asked = {PLACE.sub("", key) for key in given}
     where = f"{path} [{table['name']}]" if table.get("name") else str(path)
     if "domain" in table and "pillar" in table:

@@ -179,8 +179,7 @@ def _of_scheme(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_discretisation(scene: Scene) -> Iterator[Wrong]:
-    """Yield contradictions of mesh and elements: with a mesh file, keys that describe built
-    elements."""
+    """Yield contradictions of mesh and elements: a mesh file excludes keys of built elements."""
     numerics, key = scene.numerics.continuum, "numerics.continuum"
     if numerics.mesh is not None:
         if numerics.dim == 1:

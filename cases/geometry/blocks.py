@@ -91,8 +91,7 @@ class Blocks:
 
     def faces(self, tolerance: float) -> tuple[np.ndarray, np.ndarray, Outlines]:
         """Return the faces of all blocks, in order: block [f], outward unit normal [f, d], outline.
-        Coplanar facets of a block are one face. tolerance : m, below which vertices are
-        collinear."""
+        Coplanar facets of a block are one face. tolerance : m, of collinear vertices."""
         half, plane = self.body.halves(), self.body.plane
         into = self.body.sides[half.facet, 1] == half.cell
         key = np.stack([half.cell, plane[half.facet], into], axis=1)

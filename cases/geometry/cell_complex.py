@@ -20,8 +20,7 @@ PARALLEL = 1e-12  #: sine of the angle below which planes share one normal
 
 
 class GeometryError(ValueError):
-    """A domain that cannot be cut into convex blocks: `at` (place), `cause` and `key` of the
-    scene."""
+    """A domain that cannot be cut into convex blocks: `at` a place, `cause`, `key` of the scene."""
 
     def __init__(self, at: np.ndarray | None, cause: str, key: str = "domain") -> None:
         place = "" if at is None else ", near [{}]".format(", ".join(f"{x:.6g}" for x in at))
@@ -153,16 +152,14 @@ class Complex:
         return low, high
 
     def places(self, half: Halves) -> np.ndarray:
-        """Return the signed distance from the origin of each half-facet's plane [h], m, along its
-        outward normal."""
+        """Return the signed distance of each half-facet's plane from the origin [h], m."""
         first = half.facet
         for bound in reversed(self.bounds):
             first = bound[np.searchsorted(bound[:, 0], first), 1]
         return (self.vertices[first] * half.outward).sum(axis=1)
 
     def depths(self, point: np.ndarray) -> np.ndarray:
-        """Return the depth of a point [d] in each cell [count], m: negative outside, -inf for
-        removed cells."""
+        """Return the depth of a point [d] in each cell [count], m; < 0 outside, -inf if removed."""
         half, depth = self.halves(), np.full(self.count, np.inf)
         np.minimum.at(depth, half.cell, self.places(half) - half.outward @ point)
         return np.where(np.isinf(depth), -np.inf, depth)
@@ -178,8 +175,7 @@ class Complex:
         )._without_inner()
 
     def joined(self, root: np.ndarray) -> "Complex":
-        """Return the complex with cells merged; root : int array [count], the cell that each
-        joins."""
+        """Return the complex with cells merged; root : int array [count], the cell each joins."""
         return replace(self, sides=np.append(root, OUTSIDE)[self.sides])._without_inner()
 
     def _without_inner(self) -> "Complex":

@@ -89,8 +89,7 @@ def cut(body: Complex, planes: Planes, tolerance: float) -> Cut:
     """Return a complex with its cells cut by their planes.
 
     Vertices within the tolerance (m) of a plane are on it. A cell's first slab keeps its index; the
-    others are appended. Raises Sliver where a plane cuts a cell and contains one of its facets,
-    edges included, within the tolerance.
+    others are appended. Raises Sliver where a plane that cuts a cell contains one of its facets.
     """
     work = _Work(body, planes, tolerance)
     for k in range(1, body.dim + 1):
@@ -173,8 +172,7 @@ class _Work:
         self.number[k - 1] += len(cell)
 
     def _bound_gained(self, k: int, cross: Lookup) -> None:
-        """Bound the sections that k-cells gain: set the vertex places (k = 1), or list the
-        (k-2)-cells that lie in the planes."""
+        """Bound the new sections by vertices (k = 1) or by the (k-2)-cells in the planes."""
         cell, plane = cross.pairs.T
         if k == 1:
             at = np.searchsorted(self.rows[1][:, 0], cell)
@@ -198,8 +196,7 @@ class _Work:
         self.rows[k - 1] = np.concatenate([self.rows[k - 1], bound])
 
     def _check_closed(self, k: int, bound: np.ndarray, number: int) -> None:
-        """Raise Sliver unless each section has two ends (k = 2) or a closed loop of edges (k =
-        3)."""
+        """Raise Sliver unless each section has two ends (k = 2) or closed edges (k = 3)."""
         ends, times = bound, np.bincount(bound[:, 0], minlength=number)
         wrong = np.flatnonzero(times != 2 if k == 2 else times < 3)
         if not len(wrong) and k == 3:

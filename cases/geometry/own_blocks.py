@@ -28,9 +28,8 @@ ALIKE = 1.0  # degrees: least difference in angle that decides between two sets 
 
 
 def complex_of_file(path: Path, mesh: bool = False) -> tuple[Complex, list[str] | None]:
-    """Return the blocks of a file, or the cells of a mesh, as a complex; and the names of its
-    groups of joints, which become its joint sets, or None without groups. Raises MeshError, in one
-    phrase."""
+    """Return the blocks of a file, or the cells of a mesh, as a complex; and the names of its joint
+    groups, which become joint sets, or None. Raises MeshError, in one phrase."""
     given = read_cells(path) if mesh else read_blocks(path)
     tolerance = SAME * float(np.ptp(given.x, axis=0).max())
     number = merged(given.x, tolerance)
@@ -192,8 +191,7 @@ def _with_sides(body: Complex) -> Complex:
 
 
 def outlines_of(body: Complex) -> list[np.ndarray]:
-    """Return the corners of the rock in the plane, or of its bounding box in space, and of each
-    opening, float arrays [n, d], m."""
+    """Return the corners of the rock (in space its bounding box) and of each opening [n, d], m."""
     facet, vertex = body.corners_of_facets().T
     side = np.where(body.inner, -1, body.side)
     own = [body.vertices[vertex[side[facet] == k]] for k in range(side.max() + 1)]

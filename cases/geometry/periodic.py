@@ -87,8 +87,7 @@ def _facets_at(blocks: Blocks, axis: int, sign: int) -> np.ndarray:
 
 
 def _polygon(corners: np.ndarray, axis: int) -> shapely.Polygon:
-    """Return a piece of a side, corners [n, d], m, as a polygon in the other axes; missing axes
-    have unit width."""
+    """Return a piece of a side, corners [n, d], m, as a polygon; missing axes have unit width."""
     own = np.delete(corners, axis, axis=1)
     if own.shape[1] == 2:
         return shapely.Polygon(own)

@@ -36,8 +36,7 @@ class Pieces:
         }
 
     def near(self, piece: int) -> list[int]:
-        """Return the pieces that one may merge with, by decreasing area of the shared face; those
-        across kept joints come last."""
+        """Return the pieces to merge with, by decreasing shared area, across kept joints last."""
         own = self._halves[piece][self._open[self._halves[piece]]]
         beside, which = np.unique(self.root[self.half.across[own]], return_inverse=True)
         area = np.bincount(which, self._area[own])
@@ -45,8 +44,7 @@ class Pieces:
         return beside[np.lexsort([beside, -area, joint])].tolist()
 
     def fitting(self, piece: int, near: Iterable[int], tolerance: float) -> int | None:
-        """Return the first candidate whose union with a piece is convex (all corners within all
-        outer planes), or None."""
+        """Return the first candidate whose union with a piece is convex, or None."""
         for other in near:
             both = np.append(self._halves[piece], self._halves[other])
             across = self.half.across[both]
@@ -76,8 +74,7 @@ class Pieces:
 
 
 def clipped(corners: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Return the corners of the part of a convex polygon or segment where s >= 0; s : value at each
-    corner [n]."""
+    """Return the corners of the part of a convex polygon or segment with s >= 0 at its corners."""
     after, ahead = np.roll(corners, -1, axis=0), np.roll(s, -1)
     crosses = s * ahead < 0
     if len(corners) == 2:

@@ -80,8 +80,8 @@ def read_blocks(path: Path) -> Given:
 
 
 def read_cells(path: Path) -> Given:
-    """Return the cells of a gmsh file as blocks: those of the groups "rock...", all of one kind.
-    Raises MeshError."""
+    """Return the cells of one kind in a gmsh file's groups "rock..." as blocks. Raises
+    MeshError."""
     tagged = read_tagged(path)
     cells = tagged.cells[:, FROM_GMSH[tagged.kind]]  # the permutation is its own inverse
     parts = _parts(MESHIO[tagged.kind], cells)

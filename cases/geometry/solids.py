@@ -84,8 +84,7 @@ def prism(corners: np.ndarray, axis: int, span: tuple[float, float]) -> Solid:
 
 
 def corners_of(polygon: shapely.Geometry) -> np.ndarray:
-    """Return the corners [n, 2] of a polygon, counter-clockwise from the lowest of the leftmost;
-    collinear corners are omitted."""
+    """Return a polygon's corners [n, 2], not collinear, counter-clockwise from the lower left."""
     points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
@@ -96,8 +95,7 @@ def corners_of(polygon: shapely.Geometry) -> np.ndarray:
 
 @dataclass(frozen=True)
 class HalfSpace:
-    """The half-space that the normal [d] of a plane points into; through : point of the plane,
-    m."""
+    """The half-space that the normal [d] of a plane points into; through : a point of the plane."""
 
     normal: np.ndarray
     through: np.ndarray

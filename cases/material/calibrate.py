@@ -137,8 +137,7 @@ def _springs(
 
 
 def _scattered(scene: Scene, segment: np.ndarray) -> np.ndarray:
-    """Return each joint's compliance over the mean [N - 1]; each segment, with the joint after it,
-    has its own random stream."""
+    """Return each joint's compliance over the mean [N - 1]; each segment has its random stream."""
     if scene.scatter is None or not scene.scatter.compliance:
         return np.ones(len(segment) - 1)
     counts = np.bincount(segment)

@@ -62,8 +62,8 @@ def stress_in_reach(scene: AnyScene) -> float:
 
 
 def stresses(scene: AnyScene) -> tuple[float, float]:
-    """Return the largest initial stress, and the sum of the peaks of all loads, waves and sudden
-    weight, Pa."""
+    """Return the largest initial stress, and the summed peaks of loads, waves and sudden weight,
+    Pa."""
     initial = 0.0 if scene.prestress is None else scene.prestress.largest(scene.excavated)
     added = sum(_stress_of(one, scene) * _peak(one, scene.time.duration) for one in scene.pulses)
     if scene.gravity is None:

@@ -93,8 +93,7 @@ def slowest(scene: RockMass) -> float:
 
 
 def added(one: JointSet) -> np.ndarray:
-    """Return the compliance of one set in Kelvin's form (orthogonal tensor components), [3, 3] or
-    [6, 6], 1/Pa."""
+    """Return a set's compliance in Kelvin's form, orthogonal components, [3, 3] or [6, 6], 1/Pa."""
     n = one.normal
     return one.normal_compliance * opening(n) + one.shear_compliance * sliding(n)
 
@@ -134,8 +133,7 @@ def with_joints(C: np.ndarray, sets: list[JointSet]) -> np.ndarray:
 
 
 def joints_alone(sets: list[JointSet], dimension: int = 2) -> np.ndarray:
-    """Return C of rigid bodies between joints in Voigt's form, Pa; very large for strains to which
-    no set yields."""
+    """Return C of rigid bodies with joints, Voigt's form, Pa; huge where no joint set yields."""
     scale = _scale(dimension)
     S = sum(map(added, sets), start=np.zeros((len(scale), len(scale))))
     S = S + RIGID * (np.abs(S).max() or LEAST) * np.eye(len(scale))

@@ -188,8 +188,7 @@ def rock_of(scene: Scene) -> JointedRock:
 
 
 def equivalent_constants(rock: Rock) -> tuple[float, float] | None:
-    """Return Young's modulus (Pa) and Poisson's ratio of the rock mass from [rock]; None if the
-    joints set them."""
+    """Return E (Pa) and Poisson's ratio of the rock mass from [rock]; None if joints set them."""
     if rock.p_speed and rock.s_speed:
         return modulus_from_speeds(rock.p_speed, rock.s_speed, rock.density)
     if rock.equivalent_modulus is None or rock.equivalent_poisson is None:

@@ -20,10 +20,8 @@ NAMES = ("friction", "cohesion", "residual_cohesion", *(n for part in PARTS for 
 
 @dataclass(frozen=True)
 class Strength:
-    """Strength and closure parameters of the joints, by their names in `joints.law.Law`.
-
-    Each is an attribute: a float array [N - 1], or None if no joint has it.
-    """
+    """Strength and closure parameters of the joints, by their names in `joints.law.Law`. Each is an
+    attribute: a float array [N - 1], or None if no joint has it."""
 
     given: dict[str, np.ndarray] = field(default_factory=dict)
 
@@ -182,9 +180,7 @@ class Properties(JointedRock, Strength):
     @property
     def excess_compliance(self) -> np.ndarray:
         """Compliance of each joint beyond the ordinary one in the homogenised bar [N - 1], m/Pa.
-
-        1/K = 1/K'_n - 1/K'_n(regular); exactly zero for a joint as stiff as the others.
-        """
+        1/K = 1/K'_n - 1/K'_n(regular); exactly zero for a joint as stiff as the others."""
         return _beyond(self.stiffness, self.regular)
 
     @property
@@ -206,10 +202,8 @@ class Properties(JointedRock, Strength):
 
     @property
     def damps_alone(self) -> np.ndarray:
-        """Whether a joint as stiff as the others has a different dashpot, bool array [N - 1].
-
-        The homogenised bar cannot represent such a dashpot.
-        """
+        """Whether a joint as stiff as the others has a different dashpot, bool array [N - 1]. The
+        homogenised bar cannot represent such a dashpot."""
         if self.joint_time_constant is None:
             return np.zeros_like(self.tension)
         usual = self.ordinary_time_constant

@@ -75,8 +75,7 @@ def wave_moduli(rock: IntactRock) -> np.ndarray:
 
 
 def joint_stiffness(equivalent: float, intact: float, spacing: float) -> float:
-    """Return the joint's own K_n (Pa/m) that gives the rock mass its modulus, equation (4);
-    infinite if the moduli are equal."""
+    """Return the joint's own K_n (Pa/m) from the moduli, equation (4); infinite if equal."""
     if equivalent == intact:
         return inf
     return 1 / (spacing * (1 / equivalent - 1 / intact))

@@ -55,8 +55,7 @@ def rocks_beside(scene: RockMass, one: JointSet) -> list[IntactRock]:
 
 
 def within(scene: RockMass, sets: Sequence[JointSet]) -> list[RockMass]:
-    """Return each region, then the rest, as a scene of one rock with the joint sets that cut it;
-    these scenes are not validated."""
+    """Return each region, then the rest, as a one-rock scene with its joint sets, not validated."""
     names = [*(one.name for one in scene.regions), REST]
     return [
         scene.model_copy(

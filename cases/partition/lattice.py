@@ -134,8 +134,7 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
 
 
 def _across(groups: list[list[JointSet]], dim: int) -> list[np.ndarray]:
-    """Return unit vectors along directions that no joints cut, without joints the vertical
-    first."""
+    """Return unit vectors along directions that no joints cut; without joints vertical first."""
     normals = np.array([group[0].normal for group in groups]).reshape(-1, dim)
     rank = np.linalg.matrix_rank(normals, tol=ALIKE) if groups else 0
     if rank == 2 < dim:

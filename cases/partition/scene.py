@@ -106,8 +106,7 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
 
 
 def across_periodic(scene: RockMass, blocks: Blocks) -> list[Across]:
-    """Return the contacts across a scene's periodic sides. Raises GeometryError where they do not
-    match."""
+    """Return the contacts across periodic sides. Raises GeometryError if these do not match."""
     x, dim, names = blocks.body.vertices, blocks.body.dim, [one.name for one in scene.joint_sets]
     return [
         Across(

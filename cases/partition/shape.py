@@ -75,8 +75,7 @@ class Shape:
         return (*SIDES[self.hull.dim], *(f"opening {k}" for k in range(max(numbers, default=0))))
 
     def sides_of(self, facets: Outlines, side: np.ndarray) -> np.ndarray:
-        """Return the index in `sides` of boundary facets; side : 0 for the outer boundary, 1 + k
-        for opening k, int array."""
+        """Return the index in `sides` of boundary facets; side : 0 outer, 1 + k opening k."""
         return np.where(side == 0, self._along(facets), len(SIDES[self.hull.dim]) - 1 + side)
 
     def _along(self, pieces: Outlines) -> np.ndarray:

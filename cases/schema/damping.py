@@ -47,10 +47,8 @@ class Attenuating(Table):
         return self
 
     def quality_frequencies(self, pulses: Iterable[Pulse]) -> tuple[float, float, float]:
-        """Return the reference frequency and the ends of the band for these pulses, Hz.
-
-        Raises a contradiction if no pulse has a period, or the band excludes the reference.
-        """
+        """Return the reference frequency and the ends of the band for these pulses, Hz. Raises a
+        contradiction if no pulse has a period, or the band excludes the reference."""
         period = shortest_period(pulses)
         at = self.reference_frequency or (1 / period if period else None)
         if at is None:

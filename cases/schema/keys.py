@@ -33,8 +33,7 @@ CHECKS = {"_magnitude": "", "_words": ""} | {
 
 
 class TableOf(NamedTuple):
-    """A table of a scene file: dotted path (empty for the top), model, whether it may be
-    repeated."""
+    """A table of a scene file: dotted path (empty for the top), model, whether it repeats."""
 
     path: str
     model: type[BaseModel]

@@ -150,8 +150,7 @@ PARTS = (
 
 
 def under(layer: SoftLayer, joints: JointLaw) -> SoftLayer:
-    """Return a layer with absent keys taken from [joints], except K_n and keys that contradict its
-    own."""
+    """Return a layer with absent keys from [joints], except K_n and what contradicts its own."""
     own = {key for key in JointLaw.model_fields if getattr(layer, key) is not None}
     left = own | {"normal_stiffness"}
     for part in PARTS:

@@ -102,8 +102,7 @@ class Pulse(Table):
 
     @property
     def time_scale(self) -> float | None:
-        """The period, s, for a triangle that of a half sine of the same length; None for a step or
-        record."""
+        """The period, s; a triangle counts as half a sine period; None for a step or record."""
         if self.rise is not None and self.decay is not None:
             return 2 * (self.rise + self.decay)
         return self.period

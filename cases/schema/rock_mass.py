@@ -242,6 +242,5 @@ class RockMass(SceneBase):
 
     @property
     def excavated(self) -> bool:
-        """Whether openings are excavated in rock under a prestress; the scene then starts from the
-        resulting state."""
+        """Whether openings are excavated in prestressed rock; the scene starts from the result."""
         return self.prestress is not None and bool(self.domain.holes)

@@ -101,10 +101,8 @@ class Part(NamedTuple):
 
 
 def parts_of(pillar: Pillar, segments: list[Segment]) -> list[Part]:
-    """Return the parts of a pillar from its loaded end on; one part without segments.
-
-    Raises a contradiction if segments overlap or blocks do not divide them.
-    """
+    """Return the parts of a pillar from its loaded end on; one part without segments. Raises a
+    contradiction if segments overlap or blocks do not divide them."""
     found, at = list[Part](), 0.0
     if not segments:
         return [Part(0.0, pillar.length, pillar.block_count, None)]

@@ -114,8 +114,7 @@ def contradiction(key: str, value: object, allowed: str) -> PydanticCustomError:
 def check_dimension(
     table: Table, info: ValidationInfo, space: tuple[str, ...] = (), plane: tuple[str, ...] = ()
 ) -> bool:
-    """Refuse keys of a table that have no meaning in the scene's dimension; return whether the
-    scene is in space."""
+    """Refuse keys that have no meaning in the scene's dimension; return whether it is in space."""
     in_space = dimension(info) == 3
     for key in plane if in_space else space:
         if table.gives(key):

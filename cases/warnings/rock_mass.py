@@ -261,8 +261,7 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
-    """Warn of receivers on joints, where velocity and tangential stress jump, and of forces
-    there."""
+    """Warn of receivers on joints, where velocity and stress may jump, and of forces there."""
     read = "where velocity, displacement and the stress along it are the mean of both sides"
     named = [(f"record.points[{i}]", x, read) for i, x in enumerate(scene.record.points)]
     forces = [(f"{key}.at", one.at) for key, one in scene.entries("loads") if one.at]

@@ -35,10 +35,8 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Window(NamedTuple):
-    """Fine times (s) of a whole window, their step (s), steps per sample and the decay (1/s).
-
-    Each bin of 2 pi / window has one frequency omega (rad/s), at the fraction `node` of the bin.
-    """
+    """Fine times (s) of a whole window, their step (s), steps per sample and the decay (1/s). Each
+    bin of 2 pi / window has one frequency omega (rad/s), at the fraction `node` of the bin."""
 
     times: np.ndarray
     step: float

@@ -68,9 +68,7 @@ class AlignedCurve:
 
 def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) -> AlignedCurve:
     """Return a file's curves aligned with all results of a scene; `align` shifts their clock.
-
-    Raises SceneError if curve and scene share fewer than three samples.
-    """
+    Raises SceneError if curve and scene share fewer than three samples."""
     shift = None
     if align:  # onto the solution that then fits best
         if (curves.time[-1] - curves.time[0]) / scene.interval > MOST_SAMPLES:
@@ -86,10 +84,8 @@ def align_curve(curves: Curves, scene: AnyScene, results: Results, align: bool) 
 
 
 def common_times(curves: Curves, scene: AnyScene) -> tuple[np.ndarray, bool]:
-    """Return the times [n] at which a curve is compared, s, and whether they are its own.
-
-    Raises SceneError if there are fewer than three.
-    """
+    """Return the times [n] at which a curve is compared, s, and whether they are its own. Raises
+    SceneError if there are fewer than three."""
     ours = sample_times(scene)
     start, end = max(curves.time[0], ours[0]), min(curves.time[-1], ours[-1])
     slack = 1e-6 * scene.interval  # rounding of the same time in two files

@@ -74,8 +74,7 @@ def distance_of(what: str, one: xr.Dataset, other: xr.Dataset) -> Worst:
 
 
 def _peak(components: dict[str, np.ndarray]) -> float:
-    """Return the largest length of a vector, or principal value of a tensor, whose absent
-    components are not excited."""
+    """Return the largest length of a vector or principal value of a tensor (absent means 0)."""
     if components.keys() <= (names := stress_components(3)).keys():
         absent = np.zeros_like(next(iter(components.values())))
         stress = np.stack([components.get(name, absent) for name in names], axis=-1)

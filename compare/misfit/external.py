@@ -86,8 +86,7 @@ def read_curves(
 
 
 def doubts(curves: Sequence[Curves], scene: AnyScene) -> Iterator[str]:
-    """Yield curves that are at no receiver of a scene, and times without a unit that look like
-    milliseconds."""
+    """Yield curves at no receiver of a scene, and times without a unit that may be milliseconds."""
     end = scene.time.duration
     for one in curves:
         for place in one.waveforms:

@@ -106,8 +106,7 @@ def misfit(one: xr.Dataset, other: xr.Dataset) -> float:
 
 
 def worst(one: xr.Dataset, other: xr.Dataset, quantities: Sequence[str] = QUANTITIES) -> Worst:
-    """Return the worst waveform of two results among those of some quantities that carry the
-    motion."""
+    """Return the worst waveform of two results, of some quantities, that carries the motion."""
     found = [p for p in pairings(one, other) if p.place.quantity in quantities and not p.faint]
     return max(found, key=lambda w: w.judged, default=Worst(0.0))._replace(one=None, other=None)
 

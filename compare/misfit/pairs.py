@@ -34,8 +34,7 @@ UNLIKELY = 100.0  # peak ratio of a curve without a unit that suggests another u
 
 @cache
 def pairs() -> tuple[Pair, ...]:
-    """Return the pairs whose distance is measured, sorted by its meaning, then as in the
-    registry."""
+    """Return the pairs whose distance is measured, by its meaning, then as in the registry."""
     every = solvers()
     place = {one.name: i for i, one in enumerate(every)}
     found = [

@@ -150,8 +150,7 @@ def shown(place: Place, result: xr.Dataset) -> Place:
 
 
 def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]], list[str]]:
-    """Return the receivers' positions of a quantity, m, and the names of its components, "" for the
-    only one."""
+    """Return a quantity's receivers, m, and the names of its components ("" for the only one)."""
     found = result[quantity]
     (receivers,) = (name for name in RECEIVERS if name in found.dims)
     columns = [result[name].values.tolist() for name in RECEIVERS[receivers] if name in result]

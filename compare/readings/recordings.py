@@ -121,8 +121,8 @@ def _measured(column: Column, quantity: str) -> str:
 
 
 def dataset_of(time: np.ndarray, waves: Mapping[Any, np.ndarray]) -> xr.Dataset:
-    """Return waveforms [n], each by its `Where`, over times [n], s, as a result at equal intervals.
-    Raises ValueError."""
+    """Return waveforms [n] by `Where` over times [n], s, as a result at equal intervals. Raises
+    ValueError."""
     quantities, axes, places = (list(dict.fromkeys(keys)) for keys in zip(*waves, strict=True))
     if len(waves) < len(quantities) * len(places) * len(axes):
         raise ValueError("must hold the same components at every receiver")

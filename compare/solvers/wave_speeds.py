@@ -18,10 +18,8 @@ Speeds = dict[str, tuple[float, float]]
 
 
 def speeds(scene: RockMass, resolved: Rock) -> Speeds:
-    """Return wave speeds outside all regions of rock, as an engine resolves it.
-
-    Long waves have wavelengths that are large compared with the blocks.
-    """
+    """Return wave speeds outside all regions of rock, as an engine resolves it. Long waves have
+    wavelengths that are large compared with the blocks."""
     if resolved is Rock.RIGID_BLOCKS:
         return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
     rock = elastic_rock(scene.rock)

@@ -85,8 +85,7 @@ class Front(NamedTuple):
     def waves(
         self, load: LoadHistory, times: np.ndarray, stress_y: list[float], velocity_y: list[float]
     ) -> list[np.ndarray]:
-        """Return stress, velocity and displacement [receivers, n] under a load that is zero before
-        t = 0."""
+        """Return stress, velocity, displacement [receivers, n] of a load that is zero for t < 0."""
         there, back = self._travelling(load.value, np.array(stress_y), times)
         found = [there + back]
         for signal in (load.value, load.impulse):

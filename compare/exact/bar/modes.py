@@ -84,7 +84,7 @@ def solve(scene: Scene, n_terms: int = 2000) -> xr.Dataset:
 
 def solve_damped(scene: Scene, n_terms: int = 500) -> xr.Dataset:
     """Return stress, velocity and displacement of the damped bar. The second half of the modes
-    bounds the error: the remainder equals it for a decay as 1/n^2 and is a third of it for
+    bounds the error: it equals the remainder of modes as 1/n^2, and is thrice that of modes as
     1/n^3."""
     from scipy.ndimage import maximum_filter1d
 

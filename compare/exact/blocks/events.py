@@ -145,8 +145,7 @@ class Motion:
         return first
 
     def _series(self, t: float, h: float) -> np.ndarray:
-        """Return the Taylor coefficients [ORDER + 1, m] of the state over the fraction of a
-        step."""
+        """Return the state's Taylor coefficients [ORDER + 1, m] over the fraction of a step."""
         values = self.load.value(t + h * _NODES).astype(float)
         drive = np.linalg.solve(_POWERS, values.reshape(len(_NODES), -1))
         rates = np.zeros((ORDER, len(self.x)), dtype=self.x.dtype)
@@ -166,8 +165,7 @@ class Motion:
         return self.system.free @ x + self.pushed @ (self.system.strains @ x)
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
-        """Return the fraction of the step at the first change of a joint, with the joint and
-        force."""
+        """Return the fraction of the step at the first change of a joint, the joint and force."""
         system, count = self.system, len(self.system.initial)
         if not len(system.one_sided):
             return 1.0, None

@@ -107,8 +107,7 @@ class Phase(NamedTuple):
 
 
 class Pressed(NamedTuple):
-    """Pressure that a P wave adds on a joint: `of` gives p (Pa) and p' (Pa/s) at times (s); breaks
-    : of p, s."""
+    """Pressure of a P wave on a joint: `of` gives p (Pa), p' (Pa/s) at times (s); its breaks, s."""
 
     of: Callable[[Any], tuple[Any, Any]] = lambda t: (0.0, 0.0)
     breaks: Sequence[float] = ()
@@ -275,8 +274,7 @@ class Passed:
     def _solved(
         self, rate: Any, start: float, stop: float, now: float, scale: float, ends: dict[Any, int]
     ) -> Any:
-        """Return the solution from `now` until one of `ends` crosses 0, falling (-1) or rising
-        (1)."""
+        """Return the solution from `now` until one of `ends` falls (-1) or rises (1) through 0."""
         from scipy.integrate import solve_ivp
 
         for event, direction in ends.items():

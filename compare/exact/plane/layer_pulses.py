@@ -51,8 +51,7 @@ class LayerWave:
 
 
 class Fields(NamedTuple):
-    """Velocity and stress of a `WaveMotion`, and bounds [points, components] on their
-    root-mean-square errors."""
+    """Velocity and stress of a `WaveMotion`, and bounds [points, components] on their rms error."""
 
     velocity: np.ndarray
     stress: np.ndarray

@@ -27,10 +27,8 @@ STRAIGHT = 1e-6  #: sine of the largest angle from the normal that counts as nor
 
 
 class Face(NamedTuple):
-    """Tractions and velocities on a face under unit waves (m/s) along +n: complex [..., kinds].
-
-    For waves along -n, `shear` and `normal_velocity` change sign.
-    """
+    """Tractions and velocities on a face under unit waves (m/s) along +n: complex [..., kinds]. For
+    waves along -n, `shear` and `normal_velocity` change sign."""
 
     normal: np.ndarray  # sigma_nn, Pa
     shear: np.ndarray  # sigma_tn, for SH sigma_bn, Pa

@@ -92,8 +92,7 @@ def waves_leave(scene: RockMass, face: Face | None = None) -> Answer:
 
 
 def free_face(scene: RockMass) -> Face | None:
-    """Return the plane free face that waves of a scene reach; None without one, or if there are
-    several."""
+    """Return the one plane free face that waves of a scene reach; None without, or with several."""
     outline, found = shape_of(scene.domain), []
     for side in outline.normals():
         if getattr(scene.boundaries, side) == "free":

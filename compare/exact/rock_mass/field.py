@@ -62,8 +62,7 @@ class StackField:
 
 
 def field_of(scene: RockMass) -> IncidentField:
-    """Return the field of a scene's waves on its quiet sides. Raises SceneError if it is
-    unknown."""
+    """Return the field of a scene's waves on quiet sides. Raises SceneError if it is unknown."""
     if not scene.waves:
         return free_field(scene)
     if normal_incidence.applies(scene):

@@ -160,8 +160,8 @@ class NormalField:
             self.parts.append((one, passed))
 
     def motion(self, points: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return displacement and velocity [m, d, n], and stress [m, components, n] in Pa, tension
-        positive."""
+        """Return displacement and velocity [m, d, n], and stress [m, components, n] as a
+        `WaveMotion`."""
         found = [_around(*part, np.asarray(points), np.asarray(times)) for part in self.parts]
         return tuple(np.sum(each, axis=0) for each in zip(*found, strict=True))
 

@@ -30,8 +30,7 @@ IN_PLANE = "is for a rock mass in space, not for one in the plane"
 
 
 def applies(scene: RockMass) -> Answer:
-    """Return whether only forces act on rock without joints, and act on a receiver before
-    echoes."""
+    """Return whether only forces act, on rock without joints, and arrive before any echo."""
     answer = holds(
         scene,
         ("no waves", "loads", "openings", "prestress"),

@@ -239,8 +239,7 @@ def _moved(wave: PlaneWave, normal: np.ndarray) -> float:
 
 
 def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[float, float]:
-    """Return by how much normal and shear traction exceed a joint's residual strength, Pa, 0
-    without failure."""
+    """Return by how much normal and shear traction exceed a failed joint's strength, Pa."""
     opens = slides = 0.0
     if one.tension is False or one.tensile_strength is not None:
         strength, pulled = one.tensile_strength or 0.0, float(-pressed.min())

@@ -167,8 +167,7 @@ def frame_of(scene: RockMass) -> np.ndarray:
 
 
 def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the tractions [m, d, n] on a plane with unit normal from stresses [m, components,
-    n]."""
+    """Return tractions [m, d, n] on a plane with unit normal; stress : [m, components, n]."""
     return np.einsum("mijn,j->min", stress[:, COMPONENT[len(normal)]], normal)
 
 
