@@ -20,8 +20,7 @@ class Resolved(NamedTuple):
 
     number : of the resolved joints [n]. stiffness, shear_stiffness : Pa/m. time_constant : eta, s;
     None without dashpots. less : of joints that stiffen, the compliance that the rock includes,
-    m/Pa. share : part of an ordinary joint's compliance that the homogenised rock beside a soft
-    layer loses to it.
+    m/Pa. share : part of an ordinary joint's compliance that the rock beside a layer loses to it.
     """
 
     number: np.ndarray

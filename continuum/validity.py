@@ -59,8 +59,7 @@ def _of_rock_mass(scene: RockMass, model: str) -> Reasons:
 def dimension_of(scene: Scene, dim: int | None = None) -> int:
     """Return the dimension of a pillar's mesh: as given, or the least that can represent the scene.
 
-    1 for axial motion or without rotations; 2 for motion in the plane of x and y; else 3. A mesh
-    from a file has 2 or 3.
+    1 for axial motion or without rotations; 2 in the plane of x and y; else 3. Of a file, 2 or 3.
     """
     if given := dim or scene.numerics.continuum.dim:
         return given

@@ -36,8 +36,7 @@ def highest_energy(system: BlockSystem, state: State) -> float:
 
 
 def motion_of_contacts(system: BlockSystem, state: State) -> np.ndarray:
-    """Return gap and slips (m) at the centres of all contacts, and relative rotations (rad), in
-    their frames [c, F]."""
+    """Return gap, slips (m) and relative rotations (rad) of contacts, in their frames [c, F]."""
     met, u = system.blocks.contacts, state.u
     rotations = u.shape[1] - system.blocks.dim
     of_i, of_j = (jumps_of(met.frame, arm, rotations) for arm in met.arm.swapaxes(0, 1))
@@ -75,7 +74,7 @@ def moved_apart(system: BlockSystem, state: State) -> Moved | None:
         size = np.where(met.blocks[:, 1] < count, np.sqrt(met.area), np.inf)
         place = blocks.centroid[met.blocks[:, 0], 1:2]
     else:
-        reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # of a rectangle's corners
+        reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # to a rectangle's corners
         ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
         by = np.hypot(np.abs(moved[:, 0]) + ends, by)
         size = np.append(blocks.size, np.full(len(met.walls), np.inf))[met.blocks].min(axis=1)

@@ -1,9 +1,7 @@
-"""Initial state of rigid blocks: unloaded, or at rest under prestress and gravity, found by dynamic
-relaxation.
+"""Initial state of rigid blocks: unloaded, or by dynamic relaxation under prestress and gravity.
 
 Mass-proportional damping alpha is critical for a mode omega at alpha = 2 omega. The frequency of
-the present motion follows from the change of displacement du and of unbalanced force dF over a few
-steps,
+the present motion follows from changes of displacement du and unbalanced force dF over a few steps,
 
     omega^2 = -du . dF / (du . M du),
 
@@ -40,7 +38,7 @@ UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one be
 #: A stall is no progress for 1 / PATIENCE of the most steps, and for as many steps as led there:
 #: blocks that rest on ever fewer contact points come to rest ever more slowly.
 PATIENCE = 80
-STEADY = 0.9  # least ratio of two successive distances: 1 at constant speed, 3 from rest
+STEADY = 0.9  # ratio of successive distances of steady motion: 1 at constant speed, 3 from rest
 PARTS = 40  # stages of releasing the walls of openings where joints may slip or open
 STUCK = 1e-4  # out-of-balance ratio with sticking joints, before they may slip and open
 FELT = 1e-4  # default residual force, over the force of loads and waves on a block
@@ -126,8 +124,7 @@ def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
 def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
     """Return factors of the mass matrices [N, 1, 1] that give all blocks the same critical step.
 
-    Groups of blocks in contact without a wall keep their masses: they come to rest about their
-    common centre of mass.
+    Groups of blocks without a wall keep their masses: they come to rest about their centre of mass.
     """
     found, count, (i, j) = np.ones(len(masses)), len(masses), contacts.blocks.T
     inner = j < count

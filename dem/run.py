@@ -48,7 +48,7 @@ def simulate(
     enters a rock mass through quiet sides; absent: the scene's waves in unjointed rock.
 
     Raises SceneError for an unstable step, a missing static state, rotations too large for small
-    kinematics and a quality factor; StoppedError, an UnstableError with the result so far, when the
+    kinematics, a quality factor; StoppedError, an UnstableError with the result so far, when the
     motion leaves its bounds.
     """
     if (quality := scene.rock.quality_factor) is not None:

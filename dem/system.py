@@ -32,8 +32,7 @@ class BlockSystem(NamedTuple):
     def sampled(
         self, state: State, sample: int, places: np.ndarray, watched: np.ndarray
     ) -> Samples:
-        """Return one sample of blocks [r] and contacts [w], by taking a step with a copy of the
-        state."""
+        """Return one sample of blocks [r] and contacts [w], by a step with a copy of the state."""
         model, step = self.model._replace(places=places, watched=watched), sample * self.time.stride
         found, steps = samples_for(model, 1), np.array([step])
         drive = None if model.held is None else self.loads.drive(steps)

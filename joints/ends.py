@@ -31,8 +31,7 @@ class HalfSpring(NamedTuple):
 
 
 def half_spring(k: Any, eta: Any, z: Any = inf, dt: float = 0.0) -> HalfSpring:
-    """Return the end of spring k (N/m), time constant eta (s), dashpot z (N s/m; infinite: a rigid
-    wall) at step dt (s)."""
+    """Return the end of spring k, N/m, time constant eta, s, and dashpot z, N s/m (inf: a wall)."""
     share = 1 / (1 + k * eta / z)
     lag = dt * k * share / (2 * z)
     return HalfSpring(

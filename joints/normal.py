@@ -58,8 +58,7 @@ def _cut(law, parts, t, gap, opening):
 
 @formula
 def normal_tangent(law, parts, gap, gap_rate, before, r):
-    """Return d t_n / d gap (Pa/m); before : the largest opening before this gap, m; r : rate
-    factor, 1/s."""
+    """Return d t_n / d gap (Pa/m); before : the largest opening before, m; r : rate factor, 1/s."""
     t, slope = spring_alone(law, parts, gap), -law.normal_stiffness
     if parts.closure and gap < 0.0:
         slope = -closure_stiffness(law, t)

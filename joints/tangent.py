@@ -25,8 +25,7 @@ from jointwave.joints.weakening import friction_left
 
 
 class Tangent(NamedTuple):
-    """Derivatives of the traction, Pa/m: ab is d t_a / d jump_b, with xz = zx; without shear only
-    nn is not zero."""
+    """Derivatives of the traction, Pa/m: ab is d t_a / d jump_b, xz = zx; only nn without shear."""
 
     nn: float
     xn: float = 0.0
@@ -45,8 +44,7 @@ def tangent_for(shear: bool, path: bool) -> Callable:
 
     @formula
     def tangent(law, parts, jump, rate, dt, history, r):
-        """Return the `Tangent` of one point, for the arguments of `joints.law.traction`; r : rate
-        factor, 1/s."""
+        """Return the `Tangent` of one point; r : rate factor, 1/s; others as in `law.traction`."""
         gap, opening, x, z, still, t_n, tau, way = trial(law, parts, jump, rate, dt, history)
         before, gap_rate = history.opening, rate[0]
         nn = normal_tangent(law, parts, gap, gap_rate, before, r)

@@ -2,8 +2,7 @@
 
     mu(S) = mu_s - (mu_s - mu_d) S / D   for S < D,   mu_d beyond
 
-(Ida, J. Geophys. Res. 77, 1972; Andrews, J. Geophys. Res. 81, 1976). S grows with slip in any
-direction.
+(Ida, J. Geophys. Res. 77, 1972; Andrews, J. Geophys. Res. 81, 1976). Slip in any direction counts.
 
 A step whose trial traction T* exceeds the strength tau(S) slides by l until spring and dashpot
 carry the strength that is left. With a = K_s + C_s / dt and h = t_n (mu_s - mu_d) / D

@@ -2,9 +2,8 @@
 
 The rate at step n is (3 r[n-1/2] - r[n-3/2]) / 2: second order and explicit. The first mode to grow
 alternates its sign at each step, where that rate is 4 u[n] / dt. So the step is critical when the
-largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4; for one mode, dt = sqrt(4 eta^2 + 4 / omega^2)
-- 2 eta. By the Jury conditions of the cubic characteristic polynomial no other root leaves the unit
-circle before.
+largest eigenvalue of M^-1 (dt^2 K + 4 dt C) is 4: dt = sqrt(4 eta^2 + 4 / omega^2) - 2 eta for one
+mode. By the Jury conditions of the cubic characteristic polynomial it is the first to grow.
 """
 
 from collections.abc import Callable

@@ -74,8 +74,7 @@ def check(
     speed: np.ndarray,
     places: np.ndarray,
 ) -> None:
-    """Raise StoppedError, with the number of valid samples, if a run leaves its bounds in samples
-    first .. last - 1.
+    """Raise StoppedError, with the valid samples, if samples first .. last - 1 exceed bounds.
 
     energy : the ledger [term, sample]; None where it is not exact. speed : largest at each place
     after these samples [n], in the unit of the guard's limit. places : [n, d], m.

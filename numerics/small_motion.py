@@ -51,8 +51,7 @@ def refuse_large_motion(
     Only scenes of small rotations are checked: faces without rotations stand for large faces, and
     finite rotations follow faces that separate. numerics.allow_large_motion turns the check off.
 
-    who : engine in words. find : returns the motion. t : now, s. samples : valid ones, at the last
-    check.
+    who : engine in words. find : returns the motion. t : now, s. samples : at the last check.
     """
     if scene.numerics.allow_large_motion or scene.rotation != "small":
         return
@@ -84,10 +83,7 @@ def may_overlap(cut: Blocks, moved: np.ndarray) -> bool:
 
 
 def overlapping(cut: Blocks, motion: np.ndarray) -> Moved | None:
-    """Return the two plane blocks without a contact that overlap most, or None.
-
-    motion : displacements and rotations [n, 3], m and rad.
-    """
+    """Return the two plane blocks without a contact that overlap most, or None; motion : [n, 3]."""
     if not may_overlap(cut, motion[:, :2]):
         return None
     import shapely

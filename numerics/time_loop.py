@@ -12,10 +12,7 @@ from jointwave.cases.errors import StoppedError
 
 
 class Checkpointer(Protocol):
-    """Saves and restores the state of one run.
-
-    done : number of samples of an earlier run of the same scene; 0 for a new run.
-    """
+    """Saves and restores the state of a run; done : samples of an earlier run of it, or 0."""
 
     done: int
 

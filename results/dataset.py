@@ -200,8 +200,7 @@ def _ledger(energy: np.ndarray, terms: Sequence[str]) -> tuple[float, float, flo
 
 
 def open_ledger(result: xr.Dataset) -> str:
-    """Return a warning if the imbalance of the ledger exceeds `MOST_OPEN` of its largest term, else
-    ""."""
+    """Return a warning if the imbalance exceeds `MOST_OPEN` of the largest term, else ""."""
     left, _, largest, least = _ledger(result["energy"].values, result["term"].values.tolist())
     scale = max(largest, least)
     if not left > MOST_OPEN * scale:

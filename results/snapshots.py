@@ -87,8 +87,7 @@ class SnapshotRecorder:
         self.frames[:] = [copied(self.capture(0)) for _ in range(0, samples, self.every)]
 
     def add_to(self, result: xr.Dataset) -> xr.Dataset:
-        """Return the run's result with its snapshots; in a rock mass displacement and slip are
-        relative to the first."""
+        """Return a result with its snapshots, of a rock mass with motion relative to the first."""
         time = result["time"].values[:: self.every]
         u, v, stress, slip = (np.stack(x) for x in zip(*self.frames[: len(time)], strict=True))
         if not self.scene.is_column:

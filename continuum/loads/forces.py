@@ -1,5 +1,4 @@
-"""Forces on a body: gravity, pressures, point forces, compliant bases, excavations, and waves that
-enter through quiet sides."""
+"""Forces on a body: gravity, pressures, point forces, compliant bases, excavations, waves."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -192,8 +191,7 @@ class Loads:
         return found
 
     def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
-        """Return approximately the time integral of |F| in the norm of 1 / m, sqrt(J), from every
-        `stride`-th step."""
+        """Estimate the time integral of |F| in the norm of 1 / m, sqrt(J), from some steps."""
         felt, own = 0.0, mass[self.freedom]
         many = stride * max(1, AT_ONCE // max(1, own.size))
         for first in range(0, steps, many):

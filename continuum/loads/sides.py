@@ -89,8 +89,7 @@ def quiet_sides(
 
 
 def _matched(scene: AnyScene, facets: Facets, z: np.ndarray) -> Dashpots:
-    """Return the dashpots of ends, those of matched ends behind half a joint; z : impedances
-    [n, d], Pa s/m."""
+    """Return the dashpots of ends, behind half a joint if matched; z : impedance [n, d], Pa s/m."""
     given, eta = half_joints(scene, facets.normal)
     weight, along = facets.weight[:, None], np.abs(facets.normal) > 0.5
     k = np.where(along, given[:, :1], given[:, 1:])
@@ -113,8 +112,7 @@ def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
 
 
 def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held:
-    """Return the freedoms of fixed sides, the normal ones of roller sides, and the motion of a
-    shaken side."""
+    """Return the freedoms of fixed sides, normal ones of rollers, and a shaken side's motion."""
     base: Any = next(iter(scene.bases), None)
     dim, direction = body.components, np.full(body.stiffness.shape[0], np.nan)
     for name in scene.boundaries.sides("fixed", "roller"):

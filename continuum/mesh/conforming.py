@@ -108,8 +108,7 @@ def shared(mesh: Conforming) -> Places:
 
 
 def cut_open(mesh: Conforming, pairs: Places, cut: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return cells [c, corners] with vertices doubled along cut facets, and the original of each
-    new vertex.
+    """Return cells [c, corners] with vertices doubled along cuts, and each new vertex's original.
 
     pairs : all shared facets. cut : which of them to cut, bool [n]. A vertex at the tip of a cut is
     not doubled: facets that are not cut connect both sides around it.

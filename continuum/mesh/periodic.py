@@ -30,8 +30,7 @@ class Facing(NamedTuple):
 
 
 def facing(mesh: Conforming, body: Complex, across: Across, first: int) -> Facing:
-    """Return the pairs of mesh facets across periodic sides; first : column of the first contact
-    across them.
+    """Return the pairs of mesh facets across periodic sides; first : column of their first contact.
 
     Raises GeometryError if the meshes of the two sides do not match.
     """
@@ -69,8 +68,7 @@ def matching_facets(body: Complex, across: Across) -> np.ndarray:
 
 
 def matching_vertices(body: Complex, across: Sequence[Across]) -> np.ndarray:
-    """Return for each vertex [v] its partner at the far side, or itself if it is not at a near
-    side."""
+    """Return for each vertex [v] of near sides its partner at the far side, for others itself."""
     found = np.arange(len(body.vertices))
     for one in across:
         far, near, alike = _matched(body, one, body.vertices, np.ones(len(found), bool))

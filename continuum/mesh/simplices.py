@@ -30,8 +30,7 @@ def simplex_mesh(
 ) -> Conforming:
     """Return the mesh of a complex in the plane or in space, of simplices of about this size, m.
 
-    alike : pairs of faces in space with equal meshes [n, 2], and the shift [3], m, of the first
-    from the second.
+    alike : pairs of faces in space with equal meshes [n, 2], and shifts [3], m, from the second.
 
     Raises ImportError, with installation instructions, without gmsh.
     """

@@ -53,8 +53,7 @@ def elements_along(scene: Scene, model: str) -> np.ndarray:
 
 
 def resolved_period(scene: AnyScene) -> float:
-    """Return the period (s) that elements resolve: the shortest of the loads, or a tenth of the
-    duration."""
+    """Return the period (s) that elements resolve: the shortest, or a tenth of the duration."""
     return shortest_period(scene.pulses) or scene.time.duration / 10
 
 

@@ -26,8 +26,7 @@ class SharedLeapfrog(Leapfrog):
 
     Attributes
     ----------
-    problem : the whole problem. samples : of the whole, after each call of `take`. state : of this
-    process's share.
+    problem : the whole problem. samples : of the whole, after each `take`. state : of the share.
     """
 
     def __init__(self, problem: Problem, dt: float, samples: int, energy: bool = True) -> None:

@@ -16,8 +16,7 @@ class Share(NamedTuple):
     """A process's share of a problem.
 
     problem : with the owned freedoms first, then the halo. own, halo : these freedoms' numbers in
-    the whole problem. points : their numbers in the whole problem; the first `problem.counted` are
-    recorded here.
+    the whole problem. points : their numbers in it; the first `problem.counted` are recorded here.
     """
 
     problem: Problem
@@ -82,8 +81,8 @@ def _freedoms(nodes: np.ndarray, dim: int) -> np.ndarray:
 
 
 def _points(problem: Problem, rank_of: np.ndarray, rank: int) -> tuple[np.ndarray, int]:
-    """Return the points that act on nodes of a process, those without a node of a lower rank first,
-    and the number of these."""
+    """Return the points on nodes of a process, first those without a node of a lower rank, and the
+    number of these."""
     ranks = rank_of[problem.body.joints.node]
     acts, counts = (ranks == rank).any(axis=1), ranks.min(axis=1) == rank
     first = np.flatnonzero(acts & counts)

@@ -78,9 +78,8 @@ def axis_of(body: Body) -> int:
 
 
 def points_on_axis(body: Body, places: list[float]) -> csr_matrix:
-    """Return the matrix of the motion at places on the axis [m d, freedoms] and, in two and three
-    dimensions, of the rotation about x, y, z, half the curl [m 3, freedoms]; on a joint both are
-    means of its sides."""
+    """Return the matrix of the motion at places on the axis [m d, freedoms] and, beyond one
+    dimension, of the rotation, half the curl [m 3, freedoms]; means of both sides on a joint."""
     x = np.zeros((len(places), body.x.shape[1]))
     x[:, axis_of(body)] = places
     at, share, motion = read_at(body, x)

@@ -27,8 +27,7 @@ def recorded(
 
 
 def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
-    """Return the waveforms of a pillar by the names of `dataset`; z components are zero in two
-    dimensions."""
+    """Return the waveforms of a pillar by the names of `dataset`; in 2D z components are zero."""
     dim, turns = problem.body.components, problem.body.x.shape[1] > 1
     whole, places = 3 if dim > 1 else 1, len(samples.velocity) // (dim + 3 * turns)
     force = vectors(samples.stress + samples.traction, dim, whole)
@@ -45,8 +44,8 @@ def of_pillar(problem: Problem, samples: Samples) -> dict[str, Any]:
 
 
 def vectors(rows: np.ndarray, size: int, whole: int = 0) -> np.ndarray:
-    """Return vectors [places, samples, size] from rows ordered by place, then component; zeros fill
-    up to `whole` components."""
+    """Return vectors [places, samples, size] from rows by place, then component; zeros fill up to
+    `whole` components."""
     found = rows.reshape(-1, size, rows.shape[1]).swapaxes(1, 2)
     return np.pad(found, ((0, 0), (0, 0), (0, max(0, whole - size))))
 
@@ -68,8 +67,7 @@ def ledger_of(scene: AnyScene, problem: Problem, samples: Samples) -> dict[str, 
 
 
 def of_rock_mass(dim: int, samples: Samples) -> dict[str, np.ndarray]:
-    """Return the waveforms of a rock mass by the names of `dataset`; displacement, gap and slip are
-    relative to the start."""
+    """Return the waveforms of a rock mass by the names of `dataset`, relative to the start."""
     displacement, jump = (
         vectors(rows - rows[:, :1], dim) for rows in (samples.displacement, samples.jump)
     )

@@ -175,8 +175,7 @@ def _marked(marks: np.ndarray, facet: np.ndarray) -> np.ndarray:
 
 
 def assembled(forms: Forms, kind: str, order: int) -> list[Any]:
-    """Return the matrices of mass, stiffness and damping (without entries if absent), assembled by
-    dolfinx."""
+    """Assemble mass, stiffness and damping (without entries if absent) with dolfinx."""
     rules = nodal_rule(kind, order), rock_rule(kind, order), rock_rule(kind, order)
     both = [one for one in zip(forms, rules, strict=True) if one[0] is not None]
     found = [without_round_off(matrix(by_rule(*one))) for one in both]

@@ -74,8 +74,7 @@ def jacobians(kind: str, corners: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def reference_points(kind: str, corners: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return reference coordinates [n, d] of points [n, d] in cells, by Newton's method (one step
-    in affine cells)."""
+    """Return reference coordinates [n, d] of points [n, d] in cells, by Newton's method."""
     at, flat = np.full_like(x, 0.3), compat.reference(kind, 1)
     for _ in range(ROUNDS):
         missing = x - np.einsum("nv,nvd->nd", tabulate(flat, at)[0], corners)

@@ -2,8 +2,7 @@
 
 Component c of node n is freedom d n + c, as in dolfinx's blocked spaces; d is the number of
 components. A one-dimensional mesh has one or three; of three, the second is along the mesh. Mass,
-stiffness and forces are per metre of thickness in the plane, and per square metre of section in one
-dimension.
+stiffness and forces are per metre of thickness in the plane, per area of section in one dimension.
 """
 
 from typing import Any, NamedTuple
@@ -38,8 +37,7 @@ class JumpOperator(NamedTuple):
 
     node : of block i and of block j [points, 2]. weight : area [points], m^(d-1). column : of the
     law [points], the contact between blocks, those across periodic sides last; in a pillar the
-    joint. frame : unit vectors in rows, normal and tangents [points, d, d]. place : on block i
-    [points, dimensions], m.
+    joint. frame : rows are normal and tangents [points, d, d]. place : on block i [points, dim], m.
     """
 
     node: np.ndarray
@@ -90,8 +88,8 @@ class Body(NamedTuple):
     vector space of displacements. cell : of the mesh, with its element. tied : the body's node of
     each node of the space, where several move as one; else None. x : nodes [nodes, d], m. block :
     of the partition [cells]. mass : diagonal [freedoms], kg. stiffness, damping : [freedoms,
-    freedoms], N/m and N s/m, without entries if absent. joints : without points if none is
-    resolved. sides : by name.
+    freedoms], N/m and N s/m, without entries if absent. joints : may have no points. sides : by
+    name.
 
     A process's share of a body (`continuum.processes.share`) has rows for its own freedoms, which
     come first, and columns for the halo, too; `block` is of its nodes, mesh and space are None.

@@ -4,8 +4,7 @@
 
 with eps(u) = sym(grad u). Isotropic rock has sigma = lambda tr(eps) I + 2 mu eps: with Lame's
 constants in plane strain and in space, with lambda = E nu / (1 - nu^2) in plane stress. Anisotropic
-rock has sigma_ij = C_ijkl eps_kl. A bar has sigma = E u' along it, and G u' across it. A script can
-supply other forms.
+rock has sigma_ij = C_ijkl eps_kl. A bar has sigma = E u' along it, and G u' across it.
 """
 
 from collections.abc import Callable, Mapping
@@ -38,8 +37,7 @@ Rock = Callable[[Any, Any], Forms]
 
 
 class Material(NamedTuple):
-    """Linear elastic rock: density, kg/m3; stiffness in Voigt's form [n, n], Pa; Kelvin-Voigt time
-    constant, s."""
+    """Elastic rock: density, kg/m3; stiffness in Voigt's form [n, n], Pa; Kelvin-Voigt time, s."""
 
     density: float
     stiffness: np.ndarray
@@ -129,8 +127,7 @@ def pillar(
     scene: Scene, model: str, components: int, dim: int, less: Mapping[int, float]
 ) -> list[Material]:
     """Return the rock of a pillar's segments, intact ("jointed") or homogenised, of its layers, and
-    of homogenised blocks without part of their joints; less : this part of each block, in halves of
-    an ordinary joint.
+    of homogenised blocks without part of their joints; less : this part, in halves of a joint.
 
     A layer of thickness h has the modulus K_n h and Poisson's ratio 0: the rock on both sides keeps
     a thin layer from widening, and K_n is its whole stiffness. Rock with a quality factor has its

@@ -56,8 +56,7 @@ def reference_cell(kind: str, order: int, element: Any) -> Reference:
 
 
 def _rule(kind: str, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return quadrature points of a facet, by shape functions of its corners [n, corners], and
-    weights [n]."""
+    """Return quadrature points [n, corners], by shape functions of the corners, and weights [n]."""
     if kind == "interval":
         return np.ones((1, 1)), np.ones(1)
     at, weight = quadrature(FACET[kind], degree)
@@ -69,8 +68,7 @@ def trace(
 ) -> Trace:
     """Return the nodes of facets of cells.
 
-    nodes, vertices : of each cell [cells, n]. x : its corners [cells, corners, d], m. of : k
-    facets.
+    nodes, vertices : of cells [cells, n]. x : their corners [cells, corners, d], m. of : k facets.
     """
     facets = facets_of(cell.kind)
     own = facets[of.facet]
@@ -91,8 +89,7 @@ def trace(
 
 
 def _on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nodes [q] on a facet with these corners, and the corners' shape functions there
-    [q, c]."""
+    """Return the nodes [q] on a facet, and the shape functions of its corners there [q, c]."""
     others = np.delete(cell.shares, corners, axis=1)
     local = np.flatnonzero(np.abs(others).max(axis=1) < ON)
     shares = cell.shares[local][:, corners]
@@ -104,8 +101,7 @@ def _normals(
     cell: Reference, facet: int, at: np.ndarray, x: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the unit normals out of cells with corners x [k, corners, d] at points of a facet
-    [k, q, d], and the ratio of area to reference area there [k, q]; at : shape functions of the
-    facet's corners [q, c]."""
+    [k, q, d], and the ratio of area to reference area there [k, q]; at : as `Reference.at`."""
     corners, dim = facets_of(cell.kind)[facet], x.shape[2]
     if dim == 1:
         normal = np.ones((len(x), len(at), 1))

@@ -107,9 +107,8 @@ class State(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Work vectors of a step, [0] if absent: force, rate, drag and, with a quality factor,
-    strained, m, and rock, N, of freedoms [n]; jump to drags of points [points * d]; braking : of
-    quiet nodes [k, d], N."""
+    """Work vectors of a step, [0] if absent: force to rock [n], the last two with a quality factor
+    only; jump to drags [points * d]; braking, of quiet nodes [k, d], N."""
 
     force: np.ndarray
     rate: np.ndarray

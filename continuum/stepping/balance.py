@@ -52,8 +52,8 @@ class Balance:
     ----------
     damping, quiet : of rock with mass-proportional damping, and of quiet sides [freedoms,
     freedoms], N s/m. free : freedoms that are not held. past : at the start. memory : function of
-    dt, of the rock. springs : function of dt, in front of dashpots; None without. ends : freedoms
-    of quiet sides [k, d].
+    dt. springs : function of dt, in front of dashpots; None without. ends : freedoms of quiet sides
+    [k, d].
     """
 
     def __init__(self, problem: Problem) -> None:

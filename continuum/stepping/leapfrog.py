@@ -193,8 +193,7 @@ class Leapfrog:
 
 
 def products_for_steps(body: Body) -> tuple[Product, Table]:
-    """Return the product with the stiffness, and the table of the damping (empty without) for a
-    product of the same kind."""
+    """Return the product with the stiffness, and the damping (may be empty) for the same kind."""
     dim, of_nodes = body.components, (blocks_of_nodes(body), body.x)
     own = product_of(body.stiffness, dim, *of_nodes)
     if not body.damping.nnz:

@@ -47,8 +47,7 @@ def memory_of(mechanisms: Mechanisms | None, dt: float) -> Memory:
     """Return mechanisms for steps dt (s).
 
     The work of a spring's force over a step, share_l dt / gain_l (e' - decay_l e) K (e + e') / 2,
-    is the change of a stored energy, with spring_l = share_l x / 2 coth(x / 2) and x = omega_l dt,
-    plus a loss.
+    is a loss plus a change of energy, with spring_l = share_l x / 2 coth(x / 2), x = omega_l dt.
     """
     if mechanisms is None:
         return Memory(1.0, *np.zeros((4, 0)))

@@ -45,8 +45,7 @@ class Factors:
 
 
 def _package(unknowns: int, processes: int) -> str:
-    """Return the package that factorises a matrix; raises ImportError without one for several
-    processes."""
+    """Return the package that factorises; raises ImportError if several processes lack one."""
     there = [one for one in SHARED if PETSc.Sys.hasExternalPackage(one)]
     if processes > 1:
         if not there:

@@ -9,9 +9,8 @@ that a row lacks for a longer step is added, equally in each direction.
 
 An added mass M in rock of density rho scatters about pi M / (rho l^d) of a wave of length l, at one
 wavelength, in one, two and three dimensions, by the first term of Born's series. The sum of added
-mass is at most `OF_ALL` of the rock, so that 3e-4 of a wave is scattered if small cells lie
-anywhere; and at most `OF_PIECE` of any piece of rock between joints, which bounds the error of its
-acceleration.
+mass is at most `OF_ALL` of the rock, which scatters 3e-4 of a wave if small cells lie anywhere; and
+at most `OF_PIECE` of a piece of rock between joints, a bound on the error of its acceleration.
 """
 
 from typing import NamedTuple

@@ -55,8 +55,7 @@ def holding(problem: Problem, borne: csr_matrix | None) -> csr_matrix | None:
 
 
 def elastic_rest(problem: Problem, weight: np.ndarray, hold: csr_matrix | None) -> np.ndarray:
-    """Return the displacements at rest [freedoms], m, under a weight (N) if no joint opens or
-    slips."""
+    """Return the static displacements [freedoms], m, under a weight (N) with sticking joints."""
     own, u = _Static(problem, hold), np.zeros_like(weight)
     free = own.balance.free
     u[free] = own.balance.factors(own.matrix + own.sticking).solve(weight[free])
@@ -84,8 +83,7 @@ def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -
 
 
 def _creep(scene: AnyScene, own: "_Static", done: float) -> tuple[Outcome, int]:
-    """Let the rock creep to rest under its full forces; return the outcome of the last step and the
-    number of corrections.
+    """Let the rock creep to rest under its full forces; return the last outcome, and corrections.
 
     Raises SceneError if rock moves farther than its size, or the unbalanced forces stop falling.
     """

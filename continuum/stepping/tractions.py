@@ -27,8 +27,7 @@ class Points(NamedTuple):
 
     weight : area [points], m^(d-1). column : of the law's table [points]. table :
     `joints.law.table_of`. carried : tractions at u = 0, balanced by the rock [points * d], Pa; [0]
-    without a prestress. counted : number of points, the first ones, whose energies this process
-    counts.
+    without a prestress. counted : this process counts the energies of so many points.
     """
 
     weight: np.ndarray

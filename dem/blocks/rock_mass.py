@@ -30,10 +30,7 @@ from jointwave.dem.sides.domain import surroundings_of
 
 @dataclass(frozen=True, kw_only=True)
 class BlocksOfRockMass(RigidBlocks):
-    """A rock mass as rigid blocks.
-
-    left_over : the part of the intact rock's stiffness that rigid blocks cannot represent.
-    """
+    """A rock mass as rigid blocks; left_over : part of the rock's stiffness that they lack."""
 
     scene: RockMass
     left_over: float
@@ -110,8 +107,7 @@ def blocks_of(scene: RockMass) -> BlocksOfRockMass:
 def _columns(
     scene: RockMass, cut: Cut, contacts: Contacts, further: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kinds of joints [columns, 3], see `RigidJoints`, and the kind of each contact [c],
-    NO_SET for none."""
+    """Return the `RigidJoints.kinds` [columns, 3], and the kind of each contact [c] or NO_SET."""
     joint_set = contacts.column
     if not scene.regions:
         sets = len(scene.joint_sets) + further
@@ -151,8 +147,7 @@ def _without_set(
 def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) -> Columns:
     """Return the laws of all contacts.
 
-    joints : of the joint sets. others : stiffness [2, n], Pa/m, of contacts without a set, linear,
-    one column each.
+    joints : of the joint sets. others : stiffness [2, n], Pa/m, of linear contacts without a set.
     """
     sets, made = scene.joint_sets, len(joints.normal)
     stiffness = np.append([joints.normal, joints.shear], others, axis=1)

@@ -50,8 +50,7 @@ def chunks_of(
     count : number of blocks; a j from there on is a wall. freedoms : of a block. law : column of
     each contact [c]; None where all joints are equal. start : gap and slips that give the initial
     tractions [c, d], m. points : places in the face, m, from its centre, and area of each point
-    [c, points, d]. extent [c, d], m, second [c, d (d - 1) / 2], m^(d + 1) : see
-    `KernelFlags.table`.
+    [c, points, d]. extent [c, d], m, second [c, d (d - 1) / 2] : as in `KernelFlags.table`.
     """
     blocks, dim = contacts.blocks, contacts.frame.shape[1]
     axes = contacts.frame[:, : (0, 1, 3)[dim - 1]]  # the tangent of the plane follows from n
@@ -109,8 +108,7 @@ def _tiles(low: np.ndarray, high: np.ndarray) -> list[int]:
 def marks(at: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Sort recorded blocks or contacts at places [n] into tiles that begin at `first` [tiles + 1].
 
-    Return the first one of each tile [tiles + 1], and their places, ascending, with the rows in the
-    samples [2, n].
+    Return the first of each tile [tiles + 1], and ascending places with rows in the samples [2, n].
     """
     row = np.argsort(at, kind="stable")
     return np.searchsorted(at[row], first), np.stack([at[row], row])

@@ -19,8 +19,7 @@ class Contacts(NamedTuple):
     to the centre [c, 2, d], m. centre : of block i's face [c, d], m. spread : second moments over
     the area, in the tangents [c, d - 1, d - 1], m2. column : of the law [c]; at first the joint
     set, NO_SET for none. excess : compliance of the rock beside the joint, normal and in shear
-    [c, 2], m/Pa; None without. walls : names of fixed or shaken sides or ends. outlines : corners
-    of the faces, m.
+    [c, 2], m/Pa; None without. walls : names of fixed or shaken sides. outlines : of the faces, m.
     """
 
     blocks: np.ndarray

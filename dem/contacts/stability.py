@@ -7,8 +7,7 @@ diagonal blocks K_i, where K_i is the stiffness of block i with its neighbours h
     max_i lambda(K_i, M_i)  <=  omega^2  <=  2 max_i lambda(K_i, M_i).
 
 The lower bound is the motion of one block alone. So the step of the upper bound is never above the
-critical step and at most 30 % below it; in a square lattice where translation is fastest both are
-equal.
+critical step and at most 30 % below it, and equal to it in a square lattice without rotation.
 
 Slip and opening only reduce stiffness. Joints that stiffen have the stiffness of the stiffest state
 in reach, dilatant joints that of `joints.dilation.riding_stiffness`. Dashpots of quiet sides act on
@@ -86,8 +85,7 @@ def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:
 def _stiffness(
     contacts: Contacts, columns: Columns, values: Iterable[np.ndarray], masses: np.ndarray
 ) -> np.ndarray:
-    """Return the diagonal blocks of the stiffness or damping matrix, and for a row the blocks below
-    them [2, N, F, F].
+    """Return diagonal blocks of the stiffness or damping, and of a row those below [2, N, F, F].
 
     values : stiffness or viscosity per area of each column, normal and in shear.
     """
@@ -125,8 +123,7 @@ def begin_of(
 
 
 def lower_band(matrices: np.ndarray) -> np.ndarray:
-    """Return the lower band [2 F, N F] of a symmetric matrix from its diagonal blocks and those
-    below them [2, N, F, F]."""
+    """Return a symmetric matrix's lower band [2 F, N F] from the blocks of `_stiffness`."""
     _, count, size, _ = matrices.shape
     found = np.zeros((2 * size, count, size))
     for below, block in enumerate(matrices):

@@ -31,7 +31,7 @@ class ChunkTable(NamedTuple):
 
 
 class BlockTable(NamedTuple):
-    """Blocks as arguments of the kernel: the fields of `model.Blocks` and `model.Held`, and
+    """Blocks as arguments of the kernel; other fields as in `model.Blocks` and `model.Held`.
 
     inverse : one over the inertia of each freedom. mass : gravitational mass of each block, kg.
     places : places and sample rows of recorded blocks [2, r]. back : inverse of the inertia tensor.

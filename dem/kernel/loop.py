@@ -1,8 +1,8 @@
-"""The kernel of rigid blocks in one, two or three dimensions: steps of leapfrog, or stages of a
-composition, tile by tile.
+"""The kernel of rigid blocks: steps of leapfrog, or stages of a composition, tile by tile.
 
-A contact joins block i to block j across a plane face. In its frame, n from i to j and then the
-tangents, the jump at a point of the face, e from its centre, is that of both blocks' motion there:
+A contact joins block i to block j across a plane face. The rows of E are its frame: the normal n,
+from i to j, then the tangents. With r the arms from the centroids to the face's centre and e from
+there, the jump at a point of the face is
 
     jump = E (u_j + theta_j x r_j - u_i - theta_i x r_i) + (E (theta_j - theta_i)) x e,
 
@@ -19,8 +19,8 @@ composed step (`composition`) is a leapfrog step with separate lengths for veloc
 first stage) and displacements.
 
 With rotations of any size (`finite`, in space) R_i and R_j are the rotations of the blocks since
-the start, x their centroids. The points belong to block i. The jump at a point is the distance to
-the point of block j that coincided with it at the start, in axes that turn with j:
+the start, x their centroids. The points belong to block i. The jump at a point is the vector to the
+point of block j that coincided with it at the start, in axes that turn with j:
 
     jump = E (R_j^T (x_j - x_i) + r_j - A r_i) + E (1 - A) E^T e,   A = R_j^T R_i,
 
@@ -35,8 +35,7 @@ of the jump over the step. Blocks have angular momenta at half steps, in the axe
 quaternions at whole steps (`rotation`). The ledger uses the angular velocities of these momenta at
 the orientation of the step, and closes to second order.
 
-Contacts are vectorised in lanes; their forces are added to the blocks one by one, always in the
-same order.
+Contacts are vectorised in lanes; their forces are added to blocks one by one, in a fixed order.
 
 A tile needs the contact forces of the tile before it at the same step, and the blocks of the next
 tile at the step before. So the tiles t, t - 1, t - 2, ... take the steps n, n + 1, n + 2, ... while
@@ -176,8 +175,7 @@ def loop_for(form: KernelFlags) -> Callable:
         """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
 
         Diagonal k of a band takes step j of tile k - j. Tiles outside first .. last - 1 also take
-        the steps on which later steps of the band depend; the motion left in them and in their
-        neighbours is incomplete.
+        the steps on which later steps of the band depend, and are left with incomplete motion.
 
         chunks, blocks, state, samples : `leapfrog.ChunkTable`, `leapfrog.BlockTable`, `State`,
         `Samples`. drive : forces on held blocks in each step or stage from `origin` on. walls :

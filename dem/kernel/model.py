@@ -155,8 +155,8 @@ class KernelFlags(NamedTuple):
 
     @property
     def point(self) -> Any:
-        """Rows of a point's history: sliding, m, largest opening, m, steps until it broke,
-        cohesion, Pa, and path, m."""
+        """Rows of a point's history: slide, largest opening, m, steps until it broke, cohesion, Pa,
+        path, m."""
         p = self.parts
         return rows(
             slid=self.dim - 1,

@@ -175,8 +175,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_held(blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger):
-        """Add the work of external forces and dashpots to the ledger, and with damping the dashpot
-        forces to `force`."""
+        """Add the work of external forces and dashpots to the ledger, and drag to damped forces."""
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
             for a in range(freedoms):

@@ -1,8 +1,7 @@
 """Relative motion of blocks at contacts in the plane and in space, and its adjoint, the forces.
 
 With finite rotations, the motion of points of block i in axes that turn with block j (see `loop`).
-The rows are then the jump at the centre of the face, and its gradients along the first and the
-second tangent.
+The rows are then the jump at the centre of the face, and its gradients along both tangents.
 """
 
 from collections.abc import Callable
@@ -153,12 +152,11 @@ def relative_for(form: KernelFlags) -> Callable:
 
     @formula
     def relative(m, turn, walls, n, kind, still, at, row_from, k, q, to):
-        """Set the rows from `to` on: jump at the centres of contacts, and rotation of j relative to
-        i, in the contact's frame.
+        """Set the rows from `to` on: jump at the centre, and rotation of j less that of i, in the
+        contact's frame.
 
-        m : motion of blocks. turn : as in `State`. kind : of motion of walls, 0 displacement, 1
-        velocity. still : offset of the walls' motion, less one block. k : the chunk's table.
-        q : the buffer.
+        m : motion of blocks. turn : as in `State`. kind : row of walls, 0 displacement, 1 velocity.
+        still : offset of the walls' motion, less one block. k : the chunk's table. q : the buffer.
         """
         gather(m, walls, n, kind, still, at, row_from, q)
         if finite:

@@ -1,5 +1,4 @@
-"""Forces of contacts in one dimension: loops along the row over all chunks of a tile, without
-frames and gathered motion."""
+"""Forces of contacts in one dimension: loops along the row, without frames and gathering."""
 
 from collections.abc import Callable
 

@@ -167,8 +167,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
 
 
 def face_forces_for(form: KernelFlags) -> Callable:
-    """Return the kernel of forces of joints that always hold: springs and dashpots spread evenly
-    over the face."""
+    """Return the kernel of joints that always hold: springs and dashpots spread over the face."""
     dim, turns, stressed, varied = form.dim, form.turns, form.stressed, form.parts.varied
     dashpots, has_ledger, drags, rows = form.parts.dashpots, form.ledger, form.drags, form.buffer
     LAW, JUMP, NOW, FORCE, SPREAD, DRAG = (

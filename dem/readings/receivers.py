@@ -92,8 +92,7 @@ def stencils_in_rock(
 ) -> list[Stencil]:
     """Return the stencils of points [m, d], whose value is the mean over the blocks on their sides.
 
-    sides : of `sides_at`. sets : number of joint sets. shared : whether neighbours have the weight
-    SHARED in the value.
+    sides : of `sides_at`. sets : number of joint sets. shared : whether neighbours weigh SHARED.
     """
     near, found = rock_neighbours(blocks, sets), []
     least = TRIANGLE if shared and blocks.body.dim == 2 else 0

@@ -37,8 +37,7 @@ class Sections(NamedTuple):
     def shown(
         self, system: BlockSystem, samples: Samples, sample: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the axial stress of each block in a snapshot, the mean of its two faces [N], Pa,
-        and no slip."""
+        """Return axial stresses of blocks in a snapshot, means of faces [N], Pa, and no slip."""
         found = stress_at(self, system, samples, sample)
         along = found[:, system.blocks.dim // 2, 0]
         return (along[:-1] + along[1:]) / 2, np.zeros(0)
@@ -127,8 +126,7 @@ def stress_at(reads: Sections, system: BlockSystem, samples: Samples, first: int
 
 
 def in_axes(blocks: RigidBlocks, watched: np.ndarray, contact: np.ndarray) -> np.ndarray:
-    """Return the forces of contacts [w] on blocks j in global axes [w, d, n], N, from their samples
-    [w, rows, n]."""
+    """Return forces of contacts [w] on j in global axes [w, d, n], N, from samples [w, rows, n]."""
     if blocks.dim == 1:  # there forces are along the axis, without a frame
         return contact[:, :1]
     return blocks.contacts.frame[watched].swapaxes(1, 2) @ contact[:, : blocks.dim]

@@ -17,8 +17,7 @@ class Bodies(NamedTuple):
 
     corners : [k, d], m, of a pillar always in space. kind, cells, block : as in
     `results.snapshots`. owner : the block of each corner [k]. arms : corners from the block's
-    centroid [k, d], m. joints : lines that show slip, ends [j, 2, 2], m, and contacts [j]; None
-    without.
+    centroid [k, d], m. joints : lines of slip, ends [j, 2, 2], m, and contacts [j]; None without.
     """
 
     corners: np.ndarray
@@ -32,9 +31,8 @@ class Bodies(NamedTuple):
     def frame(self, u: np.ndarray, v: np.ndarray, stress: np.ndarray, slip: np.ndarray) -> Frame:
         """Return a snapshot.
 
-        u, v : displacement and velocity of all blocks [N, F]; with finite rotations u [N, 7] ends
-        with unit quaternions, scalar part last. stress : of each block [N] or [N, components], Pa.
-        slip : of all contacts, m.
+        u, v : displacement and velocity of blocks [N, F]; with finite rotations u [N, 7] ends with
+        unit quaternions, scalar last. stress : [N] or [N, components], Pa. slip : of contacts, m.
         """
         moved = corner_motion(u, self.owner, self.arms)
         moving = corner_velocity(u, v, self.owner, self.arms)
@@ -59,8 +57,8 @@ def recorder(system: BlockSystem, state: State) -> SnapshotRecorder | None:
 
 
 def triangles(pieces: Outlines) -> tuple[np.ndarray, np.ndarray]:
-    """Return each polygon as a fan of triangles about its first corner [cells, 3], and the polygon
-    of each triangle [cells]."""
+    """Return polygons as fans of triangles about their first corners [cells, 3], and the polygon of
+    each triangle [cells]."""
     first = pieces.first
     piece = np.repeat(np.arange(len(first) - 1), np.diff(first))
     corner = np.arange(len(piece))

@@ -37,15 +37,14 @@ class PointsAndJoints(Receivers):
     def shown(
         self, system: BlockSystem, samples: Samples, sample: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the mean stress of each block in a snapshot, Pa [N, components], and the slip of
-        each contact, m."""
+        """Return block stresses in a snapshot [N, components], Pa, and slips of contacts, m."""
         stress = mean_stress(self, samples.contact, moments(self, system, samples, sample))
         return stress[:, 0], jumps(self, samples.contact)[:, 0, 1]
 
     def dataset(
         self, system: BlockSystem, state: State, samples: Samples, **attributes: Any
     ) -> xr.Dataset:
-        """Return the result of the first samples of a run."""
+        """Return the result of the samples so far."""
         outside, contact = moments(self, system, samples), samples.contact
         return dataset(
             system.blocks.scene,
@@ -115,8 +114,7 @@ def mean_stress(
 ) -> np.ndarray:
     """Return the mean stress of recorded blocks [r, n, components], Pa, compression positive.
 
-    contact : samples of the watched contacts [w, rows, n]. outside : `moments` of other forces
-    [r, d, d, n], N m.
+    contact : samples of watched contacts [w, rows, n]. outside : `moments` [r, d, d, n], N m.
     """
     faces, (row, place, side) = receivers.faces, receivers.touching.T
     dim, count = faces.frame.shape[1], contact.shape[-1]

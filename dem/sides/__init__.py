@@ -1,1 +1,1 @@
-"""Actions on blocks from outside: sides, ends, loads, waves and moving bases."""
+"""Loads and boundaries of rigid blocks: sides, ends, forces, waves and moving bases."""

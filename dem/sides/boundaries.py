@@ -98,8 +98,7 @@ def resultants(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
 
 
 def summed(values: np.ndarray, row: np.ndarray, count: int) -> np.ndarray:
-    """Return sums of values [..., m, k] over the points of each row [m], ascending:
-    [..., count, k]."""
+    """Return sums [..., count, k] of values [..., m, k] over points of ascending rows [m]."""
     found = np.zeros((*values.shape[:-2], count, values.shape[-1]))
     rows, first = np.unique(row, return_index=True)
     if len(rows):

@@ -18,8 +18,7 @@ IN_A_PERIOD = 20  # samples of the forces per period of their highest frequency
 
 
 class Pattern(NamedTuple):
-    """A force pattern: forces [m, d], N, at arms [m, d], m, on blocks [m], ascending, times a
-    history; None: constant."""
+    """Forces [m, d], N, at arms [m, d], m, on blocks [m], ascending, times a history (None: 1)."""
 
     block: np.ndarray
     arm: np.ndarray

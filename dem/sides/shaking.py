@@ -53,8 +53,7 @@ def variation(velocity: np.ndarray) -> float:
 
 def motion_of_walls(state: State, shake: np.ndarray, dt: float) -> np.ndarray:
     """Return displacement and velocity of walls before each step and after the last
-    [steps + 1, 2, freedoms (1 + walls)], from their velocities `shake`; before the first wall
-    stands a block of zeros."""
+    [steps + 1, 2, freedoms (1 + walls)], from their velocities `shake`, after a block of zeros."""
     (steps, walls, dim), f = shake.shape, state.u.shape[1]
     found = np.zeros((steps + 1, 2, 1 + walls, f))
     found[0, :, 1:] = state.u[-walls:], state.v[-walls:]
