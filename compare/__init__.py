@@ -1,4 +1,4 @@
 """Comparison of the engines: exact solutions, misfits, experiments, figures and the report.
 
-`jointwave` is the interface for scripts.
+Scripts import `jointwave`.
 """

@@ -1,4 +1,4 @@
-"""The registry: everything that can solve a scene, by name, the engines and the exact solutions."""
+"""The registry of solvers by name: the engines and the exact solutions."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 #: The engines by name; their packages are imported when they run.
 ENGINES: dict[str, Solver] = {one.name: one for one in (DEM, JOINTED_ROCK, EQUIVALENT_ROCK)}
 
-#: The modules of the exact solutions by name, each of which ends with their records. The model
-#: that an engine discretises comes before coarser ones; a module is imported when it is asked for.
+#: The modules of the exact solutions by name; each module ends with their records and is imported
+#: on demand. The model that an engine discretises comes before coarser models.
 EXACT = {
     "lattice": "blocks.row_of_blocks",
     "no-tension-chain": "blocks.row_of_blocks",
@@ -50,8 +50,8 @@ Progress = Callable[[float], None]
 
 
 def names(kind: str | None = None) -> tuple[str, ...]:
-    """Return the names of everything that can solve a scene, of this kind alone where it is given:
-    a pillar imports nothing of rock masses, whose solutions have a folder of their own."""
+    """Return the names of all solvers; kind : only those for this kind of scene. Solutions of rock
+    masses have their own folder, so that a pillar does not import them."""
     masses = kind == "rock mass"
     exact = (n for n, at in EXACT.items() if not kind or at.startswith("rock_mass.") == masses)
     return (*ENGINES, *exact)
@@ -69,14 +69,14 @@ def solver(name: str) -> Solver:
 
 
 def label_of(name: str) -> str:
-    """Return an engine or exact solution in words, "rigid blocks, exact"; other names as they
-    are."""
+    """Return the label of an engine or exact solution, such as "rigid blocks, exact"; other names
+    unchanged."""
     return solver(name).label if name in names() else name
 
 
 def in_words(text: object) -> str:
-    """Return the name of a solution, of a pair "one ~ other (%)", or of one to see, in words; other
-    text as it is."""
+    """Return text with names of solutions replaced by labels: a name, a pair "one ~ other (%)", or
+    the name after ": see "; other text unchanged."""
     reason, see, name = str(text).rpartition(": see ")
     pair, unit, rest = name.partition(" (%)")
     return reason + see + " ~ ".join(map(label_of, pair.split(" ~ "))) + unit + rest
@@ -94,7 +94,7 @@ def in_order(found: Iterable[str]) -> list[str]:
 
 
 def selection() -> dict[str, dict[str | None, str]]:
-    """Return the names of all solvers by --engine and --model."""
+    """Return the names of all solvers by values of --engine and --model."""
     found: dict[str, dict[str | None, str]] = {}
     for one in ENGINES.values():
         found.setdefault(one.engine, {})[one.model] = one.name
@@ -102,7 +102,7 @@ def selection() -> dict[str, dict[str | None, str]]:
 
 
 def applies(name: str, scene: AnyScene) -> Answer:
-    """Return whether this engine or solution applies to the scene, or the reason why not."""
+    """Return whether a solver applies to a scene, with the reason if not."""
     one = solver(name)
     if scene.kind not in one.kinds:
         return Answer(f"is for a {one.kinds[0]}, not for a {scene.kind}")
@@ -120,10 +120,10 @@ def solve(
 ) -> xr.Dataset:
     """Return the result of one engine or exact solution.
 
-    comm : mpi4py's communicator of processes that share a run of the continuum, None without.
-    keeper : saves checkpoints of a run of an engine; None: there are none.
-    Raises SceneError where it does not apply or the name is unknown, UnstableError where a run
-    goes unstable.
+    comm : mpi4py's communicator of the processes that share a run of the continuum; None: one
+    process. keeper : saves checkpoints of an engine's run; None: no checkpoints.
+    Raises SceneError if the solver is unknown or does not apply, UnstableError if a run becomes
+    unstable.
     """
     one = solver(name)
     answer = applies(name, scene)

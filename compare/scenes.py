@@ -1,4 +1,4 @@
-"""Scenes by path, or by the name of a shipped one, with the solvers that they name checked."""
+"""Scenes by path or by shipped name, with the solver names in [expect] checked."""
 
 from os import PathLike
 from pathlib import Path
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
 
     from jointwave.cases.material.calibrate import Properties
 
-#: A scene, its file, the name of a shipped one, or its tables.
+#: A scene, its file, the name of a shipped scene, or its tables.
 AnySource: TypeAlias = "AnyScene | str | PathLike[str] | dict[str, Any]"
 SHIPPED = Path(cases.__file__).parent
-MOST = 1000  # files of a folder that a name is looked for among
+MOST = 1000  # files of a folder searched for a similar name
 
 
 class Bound(NamedTuple):
-    """What a key of [expect] bounds: the distance of two solutions, by name, the reference second;
-    of their worst waveform, or of one quantity or peak."""
+    """The subject of a key of [expect]: the misfit of a solution from another, the reference, for
+    the worst waveform or for one quantity or peak, `of`."""
 
     one: str
     other: str
@@ -31,7 +31,7 @@ class Bound(NamedTuple):
 
 
 def bound_of(key: str) -> Bound:
-    """Return what a key of [expect] bounds, "dem ~ lattice" or "dem ~ lattice: velocity"."""
+    """Return the subject of a key such as "dem ~ lattice" or "dem ~ lattice: velocity"."""
     pair, _, of = key.partition(": ")
     one, _, other = pair.partition(" ~ ")
     return Bound(one, other, of)
@@ -45,7 +45,7 @@ def shipped_files() -> list[Path]:
 def find(scene: str | Path) -> Path:
     """Return the file of a scene given by path or by shipped name, `guo-li-2002/fig-03`.
 
-    Raises SceneError for a name of neither, and where one is called much the same.
+    Raises SceneError for an unknown name, with a similar name if there is one.
     """
     path = Path(scene)
     if path.exists() or path.is_symlink():
@@ -62,13 +62,13 @@ def find(scene: str | Path) -> Path:
 
 
 def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = None) -> AnyScene:
-    """Return a scene, immutable and validated. All functions that take a scene take what this does.
+    """Return a scene, immutable and validated. Other functions accept the same kinds of `scene`.
 
     scene : a file, a shipped scene ("guo-li-2002/fig-03"), its tables as a dictionary, or a scene,
-    which is checked and returned. variant : its name; empty: the scene as it stands. changes : of
-    keys by their dotted path, {"joints.damping_ratio": 0.02}.
+    which is checked and returned. variant : its name; empty: the base scene. changes : of keys by
+    dotted path, {"joints.damping_ratio": 0.02}.
 
-    Raises jointwave.SceneError, a line a mistake with file, key, value and what is allowed.
+    Raises jointwave.SceneError, one line per mistake with file, key, value and what is allowed.
     """
     require(variant, str, "load", "variant", "the name of one; keys are set by changes={...}")
     require(changes, dict | None, "load", "changes", 'a dictionary, {"time.duration": 0.1}')
@@ -82,13 +82,13 @@ def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = N
     if variant or changes:
         allowed = "are of a file, a shipped scene or tables, not of a loaded scene"
         raise SceneError(scene.where, "variant and changes", None, allowed)
-    from jointwave.cases.validate import checked  # with numpy, which no completion needs
+    from jointwave.cases.validate import checked  # imports numpy, which completion does not need
 
     return checked(scene)
 
 
 def properties(scene: AnySource) -> "Properties":
-    """Return what follows from a pillar: stiffnesses, speeds, impedance, damping of every joint.
+    """Return the calibrated stiffnesses, wave speeds, impedance and joint damping of a pillar.
 
     Raises SceneError for a rock mass.
     """
@@ -100,12 +100,12 @@ def properties(scene: AnySource) -> "Properties":
 def simulate(
     scene: AnySource, solver: str = "dem", progress: registry.Progress | None = None, **options: Any
 ) -> "xr.Dataset":
-    """Return waveforms, energies and cost of a scene by an engine or an exact solution.
+    """Return waveforms, energies and cost of a scene, from an engine or an exact solution.
 
-    scene : as `load` takes it. solver : "dem" (rigid blocks), "continuum-jointed",
-    "continuum-equivalent", or an exact solution ("lattice"; see `solvers`). progress : called with
-    the finished fraction. options : `comm`, of mpi4py, for a continuum shared by several processes;
-    `keeper`, for checkpoints.
+    scene : see `load`. solver : "dem" (rigid blocks), "continuum-jointed", "continuum-equivalent",
+    or an exact solution ("lattice"; see `solvers`). progress : called with the finished fraction.
+    options : `comm`, of mpi4py, for a continuum shared by several processes; `keeper`, for
+    checkpoints.
 
     Raises SceneError if the solver does not apply, UnstableError if a run becomes unstable.
     """
@@ -115,7 +115,7 @@ def simulate(
 def load_variants(
     scene: str | PathLike[str], changes: dict[str, Any] | None = None
 ) -> list[AnyScene]:
-    """Return the scene of a file, or a shipped one, and all its variants, each as `load` does."""
+    """Return the scene of a file, or a shipped scene, and all its variants, see `load`."""
     if not isinstance(scene, str | PathLike):
         allowed = "must be a file or the name of a shipped scene"
         raise SceneError("scene", "type", type(scene).__name__, allowed)
@@ -123,8 +123,7 @@ def load_variants(
 
 
 def _checked(scene: Any) -> Any:
-    """Return a scene; raises SceneError where its [expect] names what is no solver, or no
-    quantity."""
+    """Return a scene; raises SceneError if its [expect] names an unknown solver or quantity."""
     solvers = registry.names()
     for key in scene.expect:
         one, other, of = bound_of(key)

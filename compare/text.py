@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import Any
 
-NONE = "–"  # where there is no number
+NONE = "–"  # in place of a missing number
 
 
 def percent(x: float, digits: int = 3) -> str:
-    """Return a ratio in percent to some digits; below 0.001 % only that it is."""
+    """Return a ratio in percent to some digits, or "< 0.001"."""
     if not isfinite(x):
         return NONE
     if 0 < x < 1e-5:
@@ -17,12 +17,12 @@ def percent(x: float, digits: int = 3) -> str:
 
 
 def mean_and_worst(peak: Any) -> str:
-    """Return a `PeakDifference` in percent, of all receivers and of the worst; "" of None."""
+    """Return a `PeakDifference` in percent, the mean and the worst receiver; "" for None."""
     return f"{100 * peak.mean:.2g}, ≤ {100 * peak.worst:.2g}" if peak else ""
 
 
 def in_seconds(x: float) -> str:
-    """Return a time to two digits, in the unit that suits it."""
+    """Return a time to two digits in a suitable unit."""
     units = {"h": 3600, "min": 60, "s": 1, "ms": 1e-3}
     unit = next((unit for unit, length in units.items() if x >= length), "µs")
     shown = x / units.get(unit, 1e-6)
@@ -30,7 +30,7 @@ def in_seconds(x: float) -> str:
 
 
 def times(x: float) -> str:
-    """Return a ratio as it is read, "15×"."""
+    """Return a ratio such as "15×"."""
     return f"{x:.0f}×" if x >= 9.95 else f"{x:.1f}×"
 
 
@@ -42,7 +42,7 @@ def table_cell(value: Any, column: str) -> str:
 
 
 def cell(value: Any) -> str:
-    """Return a value of a table: whole numbers and text as they are, others to four digits."""
+    """Return a table value as text: whole numbers and text unchanged, others to four digits."""
     if isinstance(value, float):
         if not isfinite(value):
             return NONE
@@ -51,6 +51,6 @@ def cell(value: Any) -> str:
 
 
 def span(values: Iterable[float], write: Callable[[float], str] = "{:.3g}".format) -> str:
-    """Return the least and the largest of some numbers, "1 to 3", or one where they read alike."""
+    """Return the range of some numbers, "1 to 3", or one number if both ends read the same."""
     ordered = sorted(values)
     return " to ".join(dict.fromkeys(write(x) for x in (ordered[0], ordered[-1])))

@@ -1,4 +1,4 @@
-"""Stress waves in jointed rock by two engines, held against exact solutions: the Python interface.
+"""Stress waves in jointed rock by two engines, compared with exact solutions: the Python interface.
 
     import jointwave as jw
 
@@ -6,8 +6,8 @@
     blocks, rock = jw.simulate(scene, "dem"), jw.simulate(scene, "continuum-jointed")
     print(jw.misfit(blocks, rock))
 
-Results are xarray Datasets in SI units, compression positive. The public names, with their modules
-and types, are those of `__init__.pyi`; a module is imported when one of its names is first used.
+Results are xarray Datasets in SI units, compression positive. `__init__.pyi` lists the public names
+with their modules and types; a module is imported when one of its names is first used.
 """
 
 import ast
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import jointwave.compare
 
-del jointwave.compare  # the public name is the function; the package is found as any other
+del jointwave.compare  # the public name is the function; the package can still be imported
 
 _stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
 _modules = {
@@ -36,5 +36,5 @@ def __getattr__(name):
     if name not in _modules:
         raise AttributeError(f"module 'jointwave' has no attribute {name!r}")
     if name in ("simulate", "compare"):
-        import_module("jointwave.accessor")  # of the results, `result.jw.plot()`
+        import_module("jointwave.accessor")  # registers `result.jw`
     return getattr(import_module(_modules[name]), name)

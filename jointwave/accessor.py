@@ -1,5 +1,5 @@
-"""The accessor `result.jw` of xarray: figures of a result. `jointwave.simulate` and `compare` bring
-it along; a script that reads results from files imports this module."""
+"""The xarray accessor `result.jw`: figures of a result. `jointwave.simulate` and `compare` import
+it; a script that reads results from files imports this module."""
 
 from __future__ import annotations
 
@@ -15,15 +15,14 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("jw")
 class ResultFigures:
-    """Figures of a result, of an engine, an exact solution or a file."""
+    """Figures of a result."""
 
     def __init__(self, result: xr.Dataset) -> None:
         self.result = result
 
     def plot(self, *others: xr.Dataset, width: float = 190.0, font_size: float = 8.0) -> Figure:
-        """Return the waveforms at every receiver, with those of other results: of other solvers in
-        the same axes; of other variants, other physics, or the same solver again, in a row of their
-        own.
+        """Return the waveforms at every receiver with those of other results. Other solvers share
+        axes; other variants, other physics or the same solver again start a new row.
 
         width : mm. font_size : points. A static state is subtracted.
         """

@@ -1,7 +1,7 @@
 """Scene files as tests: each *.toml with an [expect] table, one test per variant and key.
 
-`pytest my-scenes/` collects them. This module is loaded by every pytest run of the environment, so
-what measures is imported when a scene is met; any other TOML file is left alone.
+`pytest my-scenes/` collects them. Every pytest run in the environment loads this module, so heavy
+modules are imported only when a scene is found; other TOML files are ignored.
 """
 
 import re
@@ -15,8 +15,8 @@ from jointwave.compare.cli import SceneWarning as SceneWarning
 if TYPE_CHECKING:
     from jointwave.compare.cli.scene_tests import SceneFile
 
-LARGEST_FILE = 10_000_000  # bytes, as of any scene
-#: Of a pillar or a rock mass, and of what is tested; each as a table or as a key.
+LARGEST_FILE = 10_000_000  # bytes, the limit of scene files
+#: Patterns that a scene with tests contains, as table or key.
 KEYS = "pillar|domain", r"(variants\.)?expect"
 
 
@@ -30,8 +30,8 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile
 
 
 def _is_scene(path: Path) -> bool:
-    """Return whether a file reads like a scene with an [expect] table, its own or a variant's; also
-    with a typing error, which must not remove it from the tests."""
+    """Return whether a file looks like a scene with [expect], its own or a variant's. A file with a
+    syntax error counts, as it must not drop out of the tests."""
     try:
         if path.stat().st_size > LARGEST_FILE:
             return False

@@ -1,4 +1,4 @@
-"""The commands, in the order in which a new user meets them."""
+"""The commands and their options, in the order of the help."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,7 +10,7 @@ from jointwave.compare.scenes import shipped
 from jointwave.compare.solvers.dem import DEM
 
 app = options.app
-FRAMES = 201  # of an animation, where the scene records no snapshots
+FRAMES = 201  # of an animation, if the scene records no snapshots
 
 
 @options.command("scene_files:new")
@@ -42,11 +42,11 @@ class List(SimpleNamespace):
 
 @options.command("explain:explain")
 class Explain(options.SceneOptions):
-    """Print what a scene has, its time steps, and what can solve it.
+    """Print the contents of a scene, its time steps, and the solvers that apply.
 
-    These are its rock and its blocks, the waves that enter, the active effects, the step of each
-    engine and what limits it, the solutions that apply with the options that select them, and the
-    reference of each engine. Nothing is run.
+    These are its rock and blocks, incoming waves, active effects, the time step of each engine and
+    what limits it, the solutions that apply with the options that select them, and the reference of
+    each engine. Nothing is run.
     """
 
     every: bool = typer.Option(
@@ -59,10 +59,10 @@ class Explain(options.SceneOptions):
 class Picture(options.SceneOptions):
     """Draw a scene, or a map of its results.
 
-    A scene is drawn with its joints, boundaries, receivers, loads and waves. Variants that look
-    different have a drawing each. Results with snapshots (`run --set record.fields=1e-3`) are drawn
-    as a map of the whole body: peak particle velocity, or speed, stress or slip at one instant. The
-    results of two engines are drawn side by side, with their difference.
+    A scene is drawn with its joints, boundaries, receivers, loads and waves; each variant that
+    looks different has its own drawing. Results with snapshots (`run --set record.fields=1e-3`) are
+    drawn as a map of the whole body: peak particle velocity, or speed, stress or slip at one
+    instant. The results of two engines are drawn side by side, with their difference.
     """
 
     scene: str = typer.Argument(
@@ -99,7 +99,7 @@ class Run(options.PrintOptions, options.SweepOptions):
     well, as a .pvd file for ParaView. Under mpiexec the processes share each run of the
     continuum; the first process does everything else.
 
-    Results that are stored already are read; --fresh computes them again. With --resume a killed
+    Stored results are read, not computed again; --fresh computes them again. With --resume a killed
     run continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
     result.
 
@@ -126,7 +126,7 @@ class Run(options.PrintOptions, options.SweepOptions):
 
 @options.command("compare:compare")
 class Compare(options.PrintOptions, options.StoredOptions, options.SweepOptions):
-    """Solve a scene by all that applies; say how far apart, and why.
+    """Solve a scene with all solvers that apply; print their misfits, and why they differ.
 
     Prints a line per engine: its worst misfit from the finest physics, with variant and receiver,
     its reference, its own numerical error, the stepping time, and the verdict. --all, --json, --out
@@ -165,7 +165,7 @@ class Compare(options.PrintOptions, options.StoredOptions, options.SweepOptions)
 
 
 class WaveOptions(options.StoredOptions):
-    """How the wave in a scene is shown."""
+    """Options for drawing the wave in a scene."""
 
     quantity: str | None = typer.Option(
         None,
@@ -182,7 +182,7 @@ class WaveOptions(options.StoredOptions):
 
 @options.command("pictures:view")
 class View(WaveOptions):
-    """Show a scene by both engines, displaced and coloured by the wave.
+    """Show a scene solved by both engines, displaced and coloured by the wave.
 
     Pillars and scenes in space are shown in three dimensions, other rock masses in their plane, on
     one colour scale.
@@ -256,7 +256,7 @@ class Report(options.PrintOptions):
 class Plan(options.SceneOptions):
     """Find the cheapest engine, elements and step that meet a misfit.
 
-    Runs from the cheapest one on, until one meets the misfit, and prints the command for that run.
+    Tries runs in order of cost until one meets the misfit, and prints the command for that run.
     """
 
     misfit: float = typer.Option(..., min=0.0, help="Largest misfit, relative L2: 0.02 is 2 %.")
@@ -269,9 +269,9 @@ class Plan(options.SceneOptions):
 class Effects(options.PrintOptions, options.SceneOptions):
     """Measure what every effect of a scene costs and changes.
 
-    For each effect this is its part of the time of a step, and the misfit of the result without it.
-    The scene is a pillar, or a rock mass that rigid blocks can represent. Results are saved in DIR
-    and not measured again.
+    For each effect it prints its share of the time of a step, and the misfit of the result without
+    it. The scene is a pillar, or a rock mass that rigid blocks can represent. Results are saved in
+    DIR and not measured again.
     """
 
     out: Path = typer.Option(Path("effects"), help="Folder for table, diagram and points.")

@@ -1,5 +1,5 @@
-"""`jointwave compare`: the verdict on each engine, every distance on request, or JSON; and
-`jointwave report`, the same as a page."""
+"""`jointwave compare`, which prints verdicts and misfits, and `jointwave report`, which writes them
+as a page."""
 
 import json
 from functools import partial
@@ -26,12 +26,12 @@ from jointwave.compare.studies.sweep import Work, compare_scene
 from jointwave.results.dataset import energy_residual, open_ledger
 
 WORST = "worst misfit (%)"
-WHOLE = 0.9  # of the scene, over which a curve is compared without a word
+WHOLE = 0.9  # of the scene's duration; a curve that covers less is mentioned
 HINT = "all misfits, and solutions that do not apply: --all; as JSON: --json"
 
 
 def compare(asked: Compare) -> None:
-    """Compare the solutions of a scene or of every case of a sweep, or print what it would cost."""
+    """Compare the solutions of a scene or of every case of a sweep, or print the estimated cost."""
     if asked.swept or asked.members:
         idle = {"--all": asked.every, "--read": asked.reads, "--results": asked.results}
         if given := [option for option, there in idle.items() if there]:
@@ -71,10 +71,10 @@ def compare(asked: Compare) -> None:
 def show_comparisons(
     found: list[Comparison], every: bool, as_json: bool, reads: bool = False
 ) -> None:
-    """Print the worst variant of each engine; every : also all others, all misfits, and why
-    solutions do not apply.
+    """Print the worst variant of each engine.
 
-    reads : also what engineers read off the velocities of all solutions.
+    every : also print the other variants, all misfits, and why solutions do not apply. reads : also
+    print engineering measures of the velocities of all solutions.
     """
     for one in found:
         ledgers = (open_ledger(r) for r in one.results.values() if "energy" in r)
@@ -97,7 +97,7 @@ def show_comparisons(
 
 
 def _show_verdicts(found: list[Comparison], every: bool) -> None:
-    """Print a line for each engine, what it is compared with, and the curves of others."""
+    """Print a line for each engine, its reference, and the misfits of external curves."""
     scores, scene, several = engine_scores(found), found[0].scene, len(found) > 1
     count = f"({len(found)} variants, the worst of each engine)" if several else scene.name
     terminal.say(f"{scene.title} {count}".rstrip(), "bold")
@@ -126,8 +126,7 @@ def _show_verdicts(found: list[Comparison], every: bool) -> None:
 
 
 def _show_remarks(scores: dict[str, EngineScore]) -> None:
-    """Print the references, static states that differ, and variants that are not checked or exceed
-    their bounds."""
+    """Print the references, differing static states, unchecked variants and exceeded bounds."""
     every = [one for of_all in scores.values() for one in of_all.variants]
     found = (f"{label_of(one.against)} ({one.reason})" for one in every if one.against)
     if reasons := dict.fromkeys(found):
@@ -145,7 +144,7 @@ def _show_remarks(scores: dict[str, EngineScore]) -> None:
 
 
 def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:
-    """Return a variant's distances, curves and verdicts, machine-readable."""
+    """Return a variant's misfits, curves and verdicts, machine-readable."""
     scene, results = comparison.scene, comparison.results
     read = {"readings": tables.reading_frame([comparison]).to_dict("records")} if reads else {}
     said = next((result.attrs["warnings"] for result in results.values()), "[]")
@@ -166,7 +165,7 @@ def _facts(comparison: Comparison, reads: bool) -> dict[str, Any]:
 
 
 def report(asked: Report) -> None:
-    """Write the page and print what it begins with, or what it would cost."""
+    """Write the page and print its summary, or print the estimated cost."""
     scenes, out = asked.scenes or [], asked.out
     for name in scenes:
         load(SceneOptions(scene=name, changes=[], variant=None, strict=asked.strict))

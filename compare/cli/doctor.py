@@ -1,7 +1,7 @@
-"""`jointwave doctor`: what is installed, how to get what is missing, and whether both engines are
-right on this machine.
+"""`jointwave doctor`: which parts are installed, how to install missing ones, and a check of both
+engines on this machine.
 
-Each library is imported in a process of its own, so that one that crashes is a line of the table.
+Each library is imported in a separate process, so that a crash becomes a line of the table.
 """
 
 import os
@@ -24,11 +24,11 @@ from jointwave.compare.scenes import load
 from jointwave.compare.solvers.continuum import INSTALL
 from jointwave.numerics import jit
 
-#: The self-checks: pairs of an engine and its exact solution, with the library that each needs.
+#: The self-checks: pairs of engine and exact solution, with the library that each needs.
 PAIRS = {"dem ~ lattice": "numba", "continuum-jointed ~ jointed-bar": "dolfinx"}
 LIBRARIES = "numpy", "scipy", "numba", "pandas", "xarray", "matplotlib", "obspy"
 COMPILER = "C compiler"
-#: The parts that are looked for, and how to get each.
+#: The parts to look for, and how to install each.
 PARTS = {name: f"pip install {name}" for name in LIBRARIES} | {
     "dolfinx": f"for the continuum: {INSTALL}",
     COMPILER: "for dolfinx's forms: apt install gcc python3-dev, or conda install c-compiler",
@@ -40,7 +40,7 @@ PARTS = {name: f"pip install {name}" for name in LIBRARIES} | {
     "mpiexec": "apt install openmpi-bin; as root set OMPI_ALLOW_RUN_AS_ROOT=1 and "
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
 }
-#: Imports a module and prints a version; pip's dolfinx brings the MPI that its libraries need.
+#: Imports a module and prints its version; pip's dolfinx brings the MPI that other modules need.
 IMPORT = """
 from contextlib import suppress
 with suppress(ImportError): import dolfinx_solver
@@ -65,7 +65,7 @@ Facts = dict[str, Any]
 
 
 def doctor(asked: Doctor) -> None:
-    """Print what is installed, and end the program with 0 if both engines are right, else 1."""
+    """Print what is installed, and exit with 0 if both engines pass their checks, else 1."""
     with terminal.progress("looking"):
         found = examine()
     (terminal.print_json if asked.as_json else terminal.show_facts)(found)
@@ -73,7 +73,7 @@ def doctor(asked: Doctor) -> None:
 
 
 def examine() -> Facts:
-    """Return the state of every part, and the checks of the engines whose library is there."""
+    """Return the state of every part, and the checks of the engines whose library is installed."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         parts = {one["part"]: one for one in pool.map(look, PARTS)}
     needed = {pair: parts[name] for pair, name in PAIRS.items()}
@@ -89,7 +89,7 @@ def examine() -> Facts:
 
 
 def look(part: str) -> Facts:
-    """Return whether a part is found, missing or broken, and what to do about it."""
+    """Return whether a part is found, missing or broken, and how to install it."""
     special = {"mpiexec": SEEN, COMPILER: COMPILE}
     program = special.get(part) or IMPORT.format(part, part.partition(".")[0])
     launcher = ["mpiexec", "-n", str(min(2, os.cpu_count() or 1))] if part == "mpiexec" else []
@@ -109,8 +109,8 @@ def look(part: str) -> Facts:
 
 
 def check(pair: str, needed: Facts) -> Facts:
-    """Return the misfit of an engine from its exact solution on the paper's free pillar, whose own
-    [expect] is the bound; nan if the part that it needs is broken."""
+    """Return the misfit of an engine from its exact solution on the paper's free pillar (nan if the
+    needed part is broken), and its bound from the scene's [expect]."""
     scene, found, reason = load("guo-li-2002/fig-03"), nan, f"{needed['part']}: {needed['found']}"
     if needed["state"] == "found":
         try:

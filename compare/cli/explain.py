@@ -1,4 +1,5 @@
-"""`jointwave explain`: what a scene has, before any run; what it has not, and why, on request."""
+"""`jointwave explain`: the contents of a scene before any run; on request also absent effects and
+solutions that do not apply, with reasons."""
 
 from itertools import pairwise
 from math import isfinite, sqrt
@@ -25,7 +26,7 @@ from jointwave.compare.solvers.wave_speeds import speeds
 from jointwave.compare.text import in_seconds, percent
 
 UNCHECKED = Reference("", f"{NOT_CHECKED}: no other solution resolves more")
-#: The units of facts, and what facts are called whose names do not say it.
+#: Units of facts, and labels of facts whose names are not enough.
 UNITS = {
     "m": "from to block length centroid width",
     "m²": "area",
@@ -63,9 +64,9 @@ def explain(asked: Explain) -> None:
 
 
 def explanation(scene: AnyScene) -> Facts:
-    """Return the effects of a scene, its steps, and what can solve it, SI.
+    """Return the effects of a scene, its time steps and the solvers that apply, SI.
 
-    Raises SceneError where no engine that applies can run.
+    Raises SceneError if engines apply but none can run.
     """
     answers = applicable(scene)
     able = [name for name, answer in answers.items() if answer]
@@ -104,8 +105,8 @@ def explanation(scene: AnyScene) -> Facts:
 
 
 def _segments(scene: Scene) -> list[Facts]:
-    """Return the rock of each segment of a pillar, with the long-wave stress 2 Z2 / (Z1 + Z2) that
-    it takes from the one before."""
+    """Return the rock of each segment of a pillar, and the stress transmission coefficient
+    2 Z2 / (Z1 + Z2) of long waves from the previous segment."""
     p = calibrate(scene)
     each = [one.at_rest for one in p.each]
     ends = p.contact_y[np.cumsum([0, *(one.block_count for one in p.each)])].tolist()
@@ -130,7 +131,7 @@ def _segments(scene: Scene) -> list[Facts]:
 
 
 def show_explanation(found: Facts, every: bool) -> None:
-    """Print the facts of a scene; every : also effects and solutions that it has not, and why."""
+    """Print the facts of a scene; every : also absent effects, and solutions that do not apply."""
     say(f"{found['title']} {found['variant']}".rstrip(), "bold")
     facts = {key: value for key, value in found.items() if key not in APART}
     if "speeds" in facts:
@@ -165,7 +166,7 @@ def show_explanation(found: Facts, every: bool) -> None:
 
 
 def _show(rest: str, rows: list[dict[str, Any]], key: str, every: bool) -> None:
-    """Print the rows that hold by a key, and how many do not, in words; every : all of them."""
+    """Print the rows in which `key` is true, and the number of the others; every : print all."""
     say("")
     empty = {name for name in rows[0] if all(not row[name] for row in rows if row[key])}
     few = [{k: v for k, v in row.items() if k not in {key, *empty}} for row in rows if row[key]]
@@ -175,7 +176,7 @@ def _show(rest: str, rows: list[dict[str, Any]], key: str, every: bool) -> None:
 
 
 def _limit(engine: str, at: list[float], size: float, longer_step: float, mass_added: float) -> str:
-    """Return what limits a step, and what lifting it costs, as a sentence."""
+    """Return, as a sentence, what limits a step, and the added mass that would lengthen it."""
     part = "block" if solver(engine).has_rigid_blocks else "element"
     place = ", ".join(f"{round(x, 9) + 0.0:.4g}" for x in at)
     return (

@@ -1,4 +1,4 @@
-"""The output of `--dry-run`: the estimates of runs, one by one and together."""
+"""The output of `--dry-run`: the estimated cost of each run and of the command."""
 
 from collections.abc import Callable, Mapping, Sequence
 from time import process_time
@@ -13,7 +13,7 @@ from jointwave.compare.studies.forecast import Run, forecasts
 from jointwave.compare.studies.forecast import runs_of as runs_of
 from jointwave.compare.text import in_seconds
 
-SPARE = 5.0  # s, in which kinds of runs that were never timed are tried
+SPARE = 5.0  # s, for trying kinds of runs that were never timed
 HEADS = {
     **{name: name for name in ("point", "variant", "engine", "scheme", "steps", "size")},
     **{"times": "runs", "seconds": "time", "bytes": "memory"},
@@ -24,7 +24,7 @@ WORDS: dict[str, Callable[[Any], str]] = {
     "seconds": in_seconds,
     "bytes": spoken,
 }
-MOST = 25  # rows; more are summed by the part of the command and the engine
+MOST = 25  # rows; more are summed by point and engine
 
 
 def show_forecasts(
@@ -35,11 +35,11 @@ def show_forecasts(
 ) -> None:
     """Print the estimated cost of each run, and of the whole command.
 
-    failing : points of a sweep that would not run, with the reason; more are found here. parts :
-    how many of what else the command does, see `timings.OTHERWISE`. Raises SceneError for a run
-    that is not possible and no point of a sweep.
+    failing : points of a sweep known to fail, with the reason; more are found here. parts : numbers
+    of the command's other tasks, see `timings.OTHERWISE`. Raises SceneError for an impossible run
+    that is no point of a sweep.
     """
-    begun = process_time()  # the command begins as this one has begun
+    begun = process_time()  # starting the command takes as long as starting this one
     with progress(f"{len(wanted)} runs") as advance:
         table, failed = forecasts(wanted, advance, SPARE)
     failed, count = {**failing, **failed}, table.times.sum()
@@ -67,7 +67,7 @@ def show_forecasts(
 
 
 def _shown(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the table in words, without the columns in which nothing stands."""
+    """Return the table as text, without empty columns."""
     found = table.assign(**{x: table[x].map(how) for x, how in WORDS.items() if x in table})
     left = [name for name in HEADS if name in found and found[name].astype(bool).any()]
     return found[left].rename(columns=HEADS)

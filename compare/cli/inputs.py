@@ -1,4 +1,4 @@
-"""Input of the commands: scenes with changed keys, curves of others, warnings, stored results."""
+"""Input of the commands: scenes with changed keys, external curves, warnings, stored results."""
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import product
@@ -16,12 +16,12 @@ from jointwave.compare.misfit.external import Curves, doubts, read_curves
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.solvers.incident import side_warnings
 
-RESULTS = Path("out")  # default folder of the results of all scenes, each in a folder of its name
+RESULTS = Path("out")  # default folder of results, with a subfolder for each scene
 
 
 def load(asked: SceneOptions, every: bool = True) -> list[AnyScene]:
-    """Return the variant that is named, with `--set` applied, warned of; without one all or, if not
-    `every`, the base scene."""
+    """Return the scenes of a command, with `--set` applied and warnings printed: the named variant;
+    if none is named all variants or, if not `every`, the base scene."""
     changes = dict(map(parse_override, asked.changes))
     if asked.variant is None and every:
         found = scenes.load_variants(asked.scene, changes)
@@ -34,7 +34,7 @@ def load(asked: SceneOptions, every: bool = True) -> list[AnyScene]:
 def curves_of(
     given: list[str], scenes: list[AnyScene], strict: bool, align: bool = False
 ) -> list[Curves]:
-    """Read what `--with` names; what is wrong with it is said before anything is solved."""
+    """Read the curves of `--with`, and report mistakes and doubts before anything is solved."""
     if not given:
         if align:
             raise SceneError("--align", "", None, "needs --with: there is no curve to align")
@@ -47,18 +47,18 @@ def curves_of(
 
 
 def stored_in(asked: StoredOptions, out: Path | None = None) -> ResultFolder:
-    """Return the stored results of a scene; out : where they are, if not said otherwise."""
+    """Return the folder of stored results of a scene; out : used if --results is not given."""
     return ResultFolder(results_of(asked.scene, asked.results or out), asked.fresh)
 
 
 def results_of(scene: str = "", given: Path | None = None) -> Path:
-    """Return the folder of a scene's results, as given, else the default one; without a scene the
-    folder of all of them."""
+    """Return the folder of a scene's results: the given one, else the default; without a scene the
+    default folder of all scenes."""
     return given or RESULTS / Path(scene).stem
 
 
 def scene_warnings(scene: AnyScene) -> list[str]:
-    """Return what a scene says but hardly means."""
+    """Return warnings about probable mistakes in a scene."""
     return [*warnings(scene), *side_warnings(scene)]
 
 
@@ -67,9 +67,9 @@ def warn(
     strict: bool = False,
     of: Callable[[AnyScene], Iterable[str]] = scene_warnings,
 ) -> None:
-    """Print the warnings of scenes, each line once; strict : they are errors.
+    """Print the warnings of scenes, each line once.
 
-    of : returns the lines of a scene. Raises SceneError of all lines.
+    strict : raise them as one SceneError instead. of : returns the lines of a scene.
     """
     lines = list(dict.fromkeys(line for scene in scenes for line in of(scene)))
     if strict and lines:

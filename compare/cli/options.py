@@ -1,7 +1,7 @@
 """The program `jointwave`, and the options that several commands share.
 
-A command is a class: its fields are the options, its docstring the help, and what carries it out is
-imported when it is called. Help and completion thus import nothing that reads, computes or draws.
+A command is a class: its fields are the options, its docstring is the help, and the function that
+executes it is imported when it is called. Help and completion thus import no heavy modules.
 """
 
 import os
@@ -26,7 +26,7 @@ C = TypeVar("C", bound=type)
 
 app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 
-#: What can simulate or solve a scene, as --engine selects it.
+#: The values of --engine.
 Engine = StrEnum("Engine", list(selection()))  # type: ignore[misc]
 EngineOption = Annotated[
     list[Engine],
@@ -74,7 +74,7 @@ class SceneOptions(SimpleNamespace):
 
 
 class SweepOptions(SceneOptions):
-    """Points of a sweep, members of an ensemble, and the processes that share them."""
+    """Options of sweeps and ensembles, and the number of processes."""
 
     swept: list[str] = typer.Option(
         [],
@@ -97,7 +97,7 @@ class SweepOptions(SceneOptions):
 
 
 class StoredOptions(SceneOptions):
-    """The folder that results are read from, and whether they are."""
+    """The folder of stored results, and whether to read them."""
 
     results: Path | None = typer.Option(
         None,
@@ -108,7 +108,7 @@ class StoredOptions(SceneOptions):
 
 
 class PrintOptions(SimpleNamespace):
-    """What is printed: estimates in place of results, or JSON."""
+    """Options of printing: estimates instead of results, or JSON."""
 
     dry: DryOption = False
     as_json: JsonOption = False
@@ -117,8 +117,8 @@ class PrintOptions(SimpleNamespace):
 def command(work: str) -> Callable[[C], C]:
     """Return a decorator that adds a class of options as the command of its name.
 
-    work : the function that is given them, "module:name" in this package. The options of base
-    classes come first, those of the last one before all others.
+    work : the function that takes the options, "module:name" in this package. Options of base
+    classes come first, starting with the last base.
     """
 
     def add(of: C) -> C:

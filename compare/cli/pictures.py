@@ -1,4 +1,4 @@
-"""The commands that draw: a scene, a map of its results, its waveforms, and its wave as a film."""
+"""The commands that draw: scenes, maps of results, waveforms and films."""
 
 import json
 import os
@@ -64,7 +64,7 @@ def picture(asked: Picture) -> None:
 
 
 def _map(folder: Path, quantity: str, time: float | None) -> tuple[Drawing, str]:
-    """Return the map of a folder's results, at most two, and its title."""
+    """Return the map of at most two results in a folder, and its title."""
     files = [folder / f"{name}.nc" for name in ENGINES] if folder.is_dir() else [folder]
     files = [file for file in files if file.exists()]
     if not files:
@@ -92,7 +92,7 @@ def _result(file: Path) -> xr.Dataset:
 
 
 def figure(asked: Figure) -> None:
-    """Solve a scene and draw its waveforms for a paper, or print what that would cost."""
+    """Solve a scene and draw its waveforms for a paper, or print the estimated cost."""
     check_out(asked.out)
     rc = printed(asked.width, asked.font_size)
     scenes, runs, wanted = load(asked), [], []
@@ -165,10 +165,10 @@ def view(asked: View) -> None:
 
 
 def _simulated(asked: Animate | View, scene: AnyScene, frames: int | None = None) -> Frame | None:
-    """Return the frame of a scene's instants, by both engines; with `--dry-run` print what it would
-    cost, and return None.
+    """Return the frame of a scene solved by both engines; with `--dry-run` print the estimated cost
+    and return None.
 
-    frames : how many of a film; None: as many as the scene records snapshots, else FRAMES.
+    frames : number of frames; None: one per recorded snapshot, or FRAMES if none are recorded.
     """
     known = snapshots.quantities_of(scene)
     if asked.quantity is not None and asked.quantity not in known:
@@ -197,7 +197,7 @@ def _require_positive(key: str, value: float | None) -> None:
 
 
 def _path(asked: Animate | View, scene: AnyScene, suffix: str) -> Path:
-    """Return --out, else a file that is called by the scene and its variant."""
+    """Return --out, else a file named after the scene and its variant."""
     name = "-".join([Path(asked.scene).stem, *scene.name.split()])
     return asked.out or Path(f"{name}{suffix}")
 

@@ -1,4 +1,4 @@
-"""The entry of `jointwave`: whatever goes wrong is one line and an exit code, never a traceback."""
+"""The entry point of `jointwave`: an error becomes one line and an exit code, not a traceback."""
 
 import atexit
 import gc
@@ -14,18 +14,18 @@ from jointwave.cases.errors import InterruptedRun, SceneError, UnstableError, pr
 from jointwave.compare.runs.checkpoint.signals import Ended, watched
 from jointwave.compare.runs.processes import Processes, started
 
-SHOWN = "JOINTWAVE_TRACEBACK"  # in the environment: whether a fault of the program is traced back
+SHOWN = "JOINTWAVE_TRACEBACK"  # environment variable: print the traceback of an internal error
 ROOT = Path(__file__).parents[2]
 MOST_LISTED = 100  # mistakes of a file
-LONGEST = 1500  # characters of a message; an argument or a path in it may be of any length
+LONGEST = 1500  # characters of a message, which may contain an argument or path of any length
 
 
 def main() -> None:
-    """Run the command line; every mistake is one line on standard error and a non-zero exit."""
-    # With colorama there numba ends all that goes to a terminal, JSON too, by an escape sequence.
+    """Run the command line; an error is one line on standard error and a non-zero exit code."""
+    # If colorama is installed, numba appends an escape sequence to all terminal output, JSON too.
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
     _open_streams()
-    # Most of what a search would see has been imported, and stays: it took a third of a short run.
+    # Most objects are imported modules, which stay: collecting garbage took a third of a short run.
     gc.set_threshold(100_000)
     atexit.register(gc.freeze)
     processes, sys.unraisablehook = Processes(), _unraisable
@@ -33,15 +33,15 @@ def main() -> None:
         signals = watched()
         processes = started()
         processes.mute_others()
-        signals.patient = not processes.is_first  # the first decides for all
+        signals.patient = not processes.is_first  # the first process decides for all
         code = run(sys.argv[1:] or ["--help"])
         sys.stdout.flush()
-    except BrokenPipeError:  # the reader has seen enough
+    except BrokenPipeError:  # the reader has closed the pipe
         code = 1
     except (Exception, Ended, KeyboardInterrupt) as error:
-        if (asked := watched().asked) and not isinstance(error, UnstableError):
-            error = Ended(asked)  # which a library may have caught
-        lines, code = _told(error)
+        if (number := watched().asked) and not isinstance(error, UnstableError):
+            error = Ended(number)  # a library may have caught it
+        lines, code = _message_and_code(error)
         if code == 1 and os.environ.get(SHOWN):
             traceback.print_exc(file=processes.stderr)
         processes.fail("\n".join(f"jointwave: {line}" for line in map(_line, lines)), code)
@@ -51,21 +51,21 @@ def main() -> None:
 
 
 def _unraisable(found: Any) -> None:
-    """Say nothing of a signal in a callback, which a compiler calls; it acts after that."""
+    """Ignore a signal during a compiler's callback; it takes effect afterwards."""
     if not isinstance(found.exc_value, Ended):
         sys.__unraisablehook__(found)
 
 
 def run(arguments: list[str]) -> int:
-    """Import the commands and run one; returns its exit code."""
+    """Import the commands, run one and return its exit code."""
     from jointwave.compare.cli.commands import app
 
     code = app(arguments, standalone_mode=False)
     return code if isinstance(code, int) else 0
 
 
-def _told(error: BaseException) -> tuple[list[str], int]:
-    """Return what is said of an error, and the exit code; 1 for a fault of the program itself."""
+def _message_and_code(error: BaseException) -> tuple[list[str], int]:
+    """Return the lines to print for an error, and the exit code; 1 for an internal error."""
     match error:
         case SceneError():
             lines, more = [str(one) for one in error.each], len(error.each) - MOST_LISTED
@@ -74,16 +74,16 @@ def _told(error: BaseException) -> tuple[list[str], int]:
             return [str(error)], error.code
         case UnstableError():
             return [str(error)], 3
-        case KeyboardInterrupt():  # before the program has begun to watch for signals
+        case KeyboardInterrupt():  # before signal handlers are installed
             return ["interrupted"], 130
         case OSError():
             return [f"{error.filename or 'output'}: {error.strerror or error}"], 2
-        case UnicodeEncodeError():  # of a file's name: all else is UTF-8, or escaped
+        case UnicodeEncodeError():  # in a file name; all other text is UTF-8 or escaped
             allowed = f"cannot be encoded in the locale's {error.encoding}; set PYTHONUTF8=1"
             return [f"{error.object!a}: {allowed}"], 2
         case MemoryError():
             return [f"not enough memory: {error}"], 2
-    if usage := getattr(error, "format_message", None):  # of typer, whose class depends on versions
+    if usage := getattr(error, "format_message", None):  # from typer; its class depends on versions
         return [usage().replace("Value error, ", "")], 2
     frames = traceback.extract_tb(error.__traceback__)
     own = [frame for frame in frames if Path(frame.filename).is_relative_to(ROOT)] or frames
@@ -99,15 +99,15 @@ def _line(message: str) -> str:
 
 
 def _open_streams() -> None:
-    """Let what is closed be as if sent to /dev/null, and what a locale cannot spell be escaped.
+    """Redirect closed standard streams to /dev/null, and escape what the locale cannot encode.
 
-    A closed descriptor would be that of the next file opened, and be written to.
+    Otherwise the next file opened would get the closed descriptor, and be written to.
     """
     for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # the lowest that is free, which is this
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free descriptor, this one
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(number, mode, encoding="utf-8", closefd=False))
     for stream in (sys.stdout, sys.stderr):
@@ -116,7 +116,7 @@ def _open_streams() -> None:
 
 
 def _flush() -> None:
-    """Write what is left; where nobody takes it, let it go: the interpreter would complain."""
+    """Flush the streams; discard what cannot be written, as the interpreter would complain."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -1,4 +1,4 @@
-"""`jointwave run`: the runs of a scene, what they cost, and where their results are."""
+"""`jointwave run`: the runs of a scene, their cost, and the files of their results."""
 
 from contextlib import ExitStack
 from functools import partial
@@ -19,11 +19,11 @@ from jointwave.compare.runs.reuse import ResultFolder
 
 LABELS = {"from_y": "from (m)", "to_y": "to (m)", "mass": "mass (kg)", "velocity": "velocity (m/s)"}
 LABELS |= {"seconds_stepping": "stepping (s)", "energy_residual": "energy residual (of the work)"}
-TOLD_BELOW = ("fragments", "static_out_of_balance", "fields")
+BELOW = ("fragments", "static_out_of_balance", "fields")  # facts printed below the table
 
 
 def run(asked: Run) -> None:
-    """Run a scene, or every case of a sweep, or print what that would cost."""
+    """Run a scene or every case of a sweep, or print the estimated cost."""
     if asked.fresh and asked.resume:
         allowed = "computes anew what --resume would continue: give one of them"
         raise SceneError("--fresh", "", None, allowed)
@@ -58,13 +58,13 @@ def run(asked: Run) -> None:
 
 
 def show_runs(done: list[runs.Done], as_json: bool) -> None:
-    """Print what was run, what it cost and where it is."""
+    """Print the runs, their cost and their files."""
     terminal.say_warnings(f"{d.job.scene.name}: {d.ledger}".lstrip(": ") for d in done if d.ledger)
     if as_json:
         terminal.print_json([one.facts for one in done])
         return
     facts = [one.facts | {"engine": label_of(one.job.name)} for one in done]
-    rows = [{key: x for key, x in one.items() if key not in TOLD_BELOW} for one in facts]
+    rows = [{key: x for key, x in one.items() if key not in BELOW} for one in facts]
     terminal.show_facts({"runs": rows}, LABELS)
     for one in done:
         name, pieces = one.job.scene.name or label_of(one.job.name), one.facts["fragments"]

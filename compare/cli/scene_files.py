@@ -1,4 +1,4 @@
-"""Scene files: the shipped ones, and those that `jointwave new` writes, a template or a copy."""
+"""`jointwave list`, and `jointwave new`, which writes a template or a copy of a scene."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from jointwave.compare.runs.output import create
 from jointwave.compare.scenes import find, load_variants, shipped
 
 TEMPLATES = Path(__file__).parent / "templates"
-TITLE = "my-scene"  # of the templates
+TITLE = "my-scene"  # title in the templates
 
 
 def list_scenes(asked: List) -> None:
@@ -32,7 +32,7 @@ def list_scenes(asked: List) -> None:
 
 
 def new(asked: New) -> None:
-    """Write a scene and say which files these are."""
+    """Write a scene and print its files."""
     if asked.rock_mass and asked.source is not None:
         raise SceneError("--rock-mass", "", None, "has no meaning with --from")
     template = "rock-mass" if asked.rock_mass else "pillar"
@@ -43,8 +43,8 @@ def new(asked: New) -> None:
 def write_new(name: str, source: str | None = None, template: str = "pillar") -> list[Path]:
     """Write a scene of this name, or a copy of the scene `source` with the files that it names.
 
-    template : "pillar" or "rock-mass", where none is copied. Returns the files. Raises SceneError
-    where one of them exists: nothing is replaced.
+    template : "pillar" or "rock-mass", if there is no source. Returns the files. Raises SceneError
+    if one of them exists: nothing is replaced.
     """
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if path.name.startswith((".", " ")) or not name.isprintable():
@@ -64,7 +64,7 @@ def write_new(name: str, source: str | None = None, template: str = "pillar") ->
 
 
 def starter(file: str, template: str = "pillar") -> str:
-    """Return a template's text with the title and the commands of a scene of this file name."""
+    """Return a template's text with title and commands adapted to a file name."""
     text, stem = (TEMPLATES / f"{template}.toml").read_text(encoding="utf-8"), Path(file).stem
     text = text.replace(f'"{TITLE}"', json.dumps(stem), 1).replace(f"{TITLE}.toml", quote(file))
     return text.replace(f"--out {TITLE}", f"--out {quote(stem)}")

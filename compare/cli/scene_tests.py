@@ -1,4 +1,4 @@
-"""The tests of a scene file: the distance of each pair of its [expect], beside its bound."""
+"""The tests of a scene file: the misfit of each pair in [expect] against its bound."""
 
 import shlex
 from collections.abc import Iterator
@@ -19,22 +19,22 @@ from jointwave.results.dataset import scene_hash
 
 
 class Misfit(Exception):
-    """A pair that is further apart than its scene expects, or that cannot be measured."""
+    """A pair whose misfit exceeds its bound, or cannot be measured."""
 
 
 class SceneFile(pytest.File):
-    """One scene file; its tests are the keys of [expect] in each variant that they apply to.
+    """A scene file; its tests are the keys of [expect] in each variant to which they apply.
 
-    results : by scene hash and name, while the tests of this file run.
+    results : by scene hash and solver, while the tests of this file run.
     """
 
     def teardown(self) -> None:
-        """Release the results: those of all scenes together take gigabytes."""
+        """Release the results; all scenes together take gigabytes."""
         self.results.clear()
 
     def collect(self) -> Iterator["PairItem"]:
-        """Yield the tests; one that fails for a file that is no scene, and for each key that
-        applies to no variant."""
+        """Yield the tests; a file that is no scene, and each key that applies to no variant, yields
+        a failing test."""
         self.results: dict[tuple[str, str], Any] = {}
         try:
             scenes = load_variants(self.path)
@@ -57,14 +57,14 @@ class SceneFile(pytest.File):
 
 
 class PairItem(pytest.Item):
-    """The distance of one pair in one variant, compared with its bound."""
+    """The test of one pair in one variant against its bound."""
 
     def __init__(self, *, scene=None, key="", most=0.0, reason="", **kwargs) -> None:
         super().__init__(**kwargs)
         self.scene, self.key, self.most, self.reason = scene, key, most, reason
 
     def runtest(self) -> None:
-        """Measure the pair; raises Misfit with all that the user needs to know."""
+        """Measure the pair; raises Misfit with the reason of a failure."""
         if self.reason:
             raise Misfit(self.reason)
         for line in scene_warnings(self.scene):

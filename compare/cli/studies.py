@@ -1,4 +1,4 @@
-"""Many runs in one command: `jointwave study`, `effects`, `plan`, `fit`, and all with `--sweep`."""
+"""Commands of many runs: `jointwave study`, `effects`, `plan`, `fit`, and all with `--sweep`."""
 
 import shlex
 from collections.abc import Callable, Iterable
@@ -52,8 +52,7 @@ def effects(asked: Effects) -> None:
 
 
 def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOptions) -> None:
-    """Show the summary of a study, or the estimates of its runs; of several MPI processes only the
-    first does.
+    """Run a study and show its summary (under MPI on the first process), or show its estimates.
 
     out : a folder, locked meanwhile; None writes nothing.
     """
@@ -91,9 +90,9 @@ def sweep(
 ) -> None:
     """Run every case of a sweep and show its table, or only estimates.
 
-    asked : the options of `run` or `compare`. work_of : returns what is done with a case, for the
-    scenes of all. solvers : returns the names of a scene's solvers. parts : what else each case
-    does, see `show_forecasts`. Raises SceneError if all cases fail.
+    asked : the options of `run` or `compare`. work_of : returns the work for a case, given the
+    scenes of all cases. solvers : returns the names of a scene's solvers. parts : other tasks of
+    each case, see `show_forecasts`. Raises SceneError if all cases fail.
     """
     cases = cases_of(asked.scene, asked.changes, asked.variant, asked.swept, out, asked.members)
     scenes = [case.scene for case in cases if case.scene is not None]
@@ -115,7 +114,7 @@ def sweep(
 
 
 def plan(asked: Plan) -> None:
-    """Find the cheapest run that meets a misfit, and print the command that runs it."""
+    """Find the cheapest run that meets a misfit, and print its command."""
     for scene in load(asked, every=False):
         with terminal.progress(scene.name or scene.title) as advance:
             found = plans.plan(scene, asked.misfit, asked.seconds, advance)
@@ -148,7 +147,7 @@ def _show_plan(one: plans.Plan, asked: Plan) -> None:
 
 
 def _named(reference: Reference) -> str:
-    """Describe the reference of errors, its accuracy, and its time limit."""
+    """Return the reference of errors in words, with its accuracy and time limit."""
     words = label_of(reference.name) + f" at {reference.settings}" * bool(reference.settings)
     if reference.error:
         words += f", accurate to {percent(reference.error)} %"
@@ -157,7 +156,7 @@ def _named(reference: Reference) -> str:
 
 
 def fit(asked: Fit) -> None:
-    """Fit a scene and print its values, or what the search would cost."""
+    """Fit a scene and print its values, or print the estimated cost."""
     (scene,) = load(asked, every=False)
     curves = read_curves(asked.given, [scene])
     warn([scene], asked.strict, lambda one: doubts(curves, one))

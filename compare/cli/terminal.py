@@ -1,6 +1,6 @@
-"""The terminal: progress, tables that stay readable, or JSON.
+"""Output on the terminal: progress, readable tables, or JSON.
 
-Titles and names come from others: no text gets here that is not `printable`.
+Titles and names come from files: all text is made `printable`.
 """
 
 import json
@@ -28,18 +28,18 @@ from jointwave.compare.text import cell, table_cell
 if TYPE_CHECKING:
     import pandas as pd
 
-EVERY = "JOINTWAVE_PROGRESS"  # in the environment: s from one line to the next, 0 for none
-PIPE, UNFOLDED = 220, 10_000  # characters: of a pipe, which has no width, and of short cells
-TURNED = 4  # rows: tables of more are not turned
+EVERY = "JOINTWAVE_PROGRESS"  # environment variable: s between lines of progress, 0 for none
+PIPE, UNFOLDED = 220, 10_000  # widths in characters: of a pipe, and of tables of short cells
+TURNED = 4  # most rows of a table that may be transposed
 LONGEST = 40  # characters of a cell that is not folded
 
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[float], None]]:
-    """Show on standard error what is being done, while it runs, and what the engines log.
+    """Show progress, and messages that the engines log, on standard error.
 
-    On a terminal a bar, with the time that it took and the time that is left, cleared at the end;
-    elsewhere a line every half minute, or as many seconds as `EVERY` says; 0: none.
+    On a terminal this is a bar with the remaining time, cleared at the end; elsewhere a line every
+    30 s, or as many seconds as the variable `EVERY` says; 0: none.
     """
     every = os.environ.get(EVERY, "30")
     if not (is_number(every) and 0 <= float(every) < inf):
@@ -64,15 +64,15 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
 
 
 def _lines(label: str, every: float) -> Callable[[float], None]:
-    """Return what prints a line of progress where the last one is so many seconds old."""
-    began = told = monotonic()
+    """Return a function that prints a line of progress if the last is at least `every` s old."""
+    began = last = monotonic()
 
     def advance(fraction: float) -> None:
-        nonlocal told
-        if every and (now := monotonic()) - told >= every:
-            told = now
+        nonlocal last
+        if every and (now := monotonic()) - last >= every:
+            last = now
             line = f"{printable(label)}: {fraction:.0%} after {now - began:.0f} s"
-            with suppress(OSError, ValueError):  # nobody may be there to read it
+            with suppress(OSError, ValueError):  # standard error may be closed
                 print(f"jointwave: {line}", file=sys.stderr, flush=True)
 
     return advance
@@ -84,13 +84,13 @@ def say(text: str, style: str = "") -> None:
 
 
 def say_wrapped(text: str, indent: str) -> None:
-    """Print a text in lines no longer than the terminal's, all but the first indented."""
+    """Print text wrapped to the terminal's width; all lines except the first are indented."""
     width = _console().width
     say(fill(text, width, subsequent_indent=indent, break_on_hyphens=False))
 
 
 def say_warnings(lines: Iterable[str]) -> None:
-    """Print warnings, a line each, beside what a command prints."""
+    """Print warnings on standard error, a line each."""
     for line in lines:
         print(f"jointwave: warning: {printable(line)}", file=sys.stderr)
 
@@ -98,9 +98,9 @@ def say_warnings(lines: Iterable[str]) -> None:
 def show_table(columns: list[str], rows: list[list[str]]) -> None:
     """Print a table of text.
 
-    A table that is wider than the terminal and has few rows is turned: its columns become rows.
-    Long cells are folded to the terminal's width. Short ones are not: a terminal that is too narrow
-    wraps whole lines, which can still be read and copied.
+    A table wider than the terminal with few rows is transposed. Long cells are folded to the
+    terminal's width. Short ones are not: a narrow terminal then wraps whole lines, which can still
+    be read and copied.
     """
     widths = (max(map(len, column)) + 2 for column in zip(columns, *rows, strict=True))
     if len(rows) <= TURNED and sum(widths) - 2 > _console().width:
@@ -116,8 +116,8 @@ def show_table(columns: list[str], rows: list[list[str]]) -> None:
 
 
 def show_frame(table: "pd.DataFrame") -> None:
-    """Print a table, if it has rows; what labels them comes first, an outermost label once;
-    solutions and pairs of them are in words. Long labels stand above the rows that have them."""
+    """Print a table, if it has rows: row labels first (equal outermost labels once, long ones above
+    their rows), with names of solutions in words."""
     if table.index.nlevels > 1 and max(map(len, map(str, table.index.unique(0)))) > LONGEST:
         for heading, rows in table.groupby(level=0, sort=False):
             say(str(heading))
@@ -135,8 +135,8 @@ def show_frame(table: "pd.DataFrame") -> None:
 
 
 def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None) -> None:
-    """Print facts: records by name, or in a list, as a table, all others as a line; nothing of what
-    is None or empty. labels : what a fact is called, with its unit, where not by its own name."""
+    """Print facts: records by name, or in a list, as a table, others as a line; None and empty ones
+    are left out. labels : of facts, with unit, if not their names."""
 
     def label(name: str) -> str:
         return (labels or {}).get(name, name).replace("_", " ")
@@ -156,7 +156,7 @@ def show_facts(facts: Mapping[str, Any], labels: Mapping[str, str] | None = None
 
 
 def fact(value: Any) -> str:
-    """Return a fact as text: a yes or no, a number, a name, or several of them."""
+    """Return a fact as text: yes or no, a number, a name, or several of these."""
     match value:
         case None:
             return "-"
@@ -173,7 +173,7 @@ def fact(value: Any) -> str:
 
 def print_json(value: Any) -> None:
     """Print a value as JSON."""
-    # JSON has no nan and no infinity; null says as much. It escapes all but DEL.
+    # JSON has no nan and infinity: null replaces them. json escapes all control characters but DEL.
     text = json.dumps(json.loads(json.dumps(value), parse_constant=lambda _: None), indent=2)
     print(text.replace("\x7f", "\\u007f"))
 

@@ -81,7 +81,7 @@ def transmission(
 
     Parameters
     ----------
-    scene : as `load` takes it.
+    scene : see `load`.
     angles : of travel from the joints' normal, degrees, 0 to below 90.
     solvers : "exact", the closed form; "dem", "continuum-jointed", ..., a run for each angle.
     incidence : "P", "S" or "SV"; the last two mean the same in the plane.

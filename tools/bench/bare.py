@@ -1,6 +1,6 @@
-"""What a user would write by hand: the same updates as bare numba loops, without any engine.
+"""The same updates as plain numba loops that a user would write by hand, without an engine.
 
-No receivers, no ledger, no ends, no other effects, one set of numbers for all joints.
+They have no receivers, energy ledger, boundaries or other effects, and equal joints.
 """
 
 import numba
@@ -11,7 +11,8 @@ LANES, ROW = 64, 72
 
 @numba.njit(cache=True, error_model="numpy")
 def axial(u, v, rate, steps, dt, x, k, c, load):
-    """Springs and dashpots along a row in one fused loop; load on the first block, N."""
+    """Step a row of blocks with springs and dashpots in one fused loop; load : on the first block,
+    N."""
     tail = u.size - 1
     for _ in range(steps):
         push = load
@@ -28,7 +29,8 @@ def axial(u, v, rate, steps, dt, x, k, c, load):
 
 @numba.njit(cache=True, error_model="numpy")
 def spatial(motion, slides, forces, steps, dt, k_n, k_s, b, mu, c, h, x, xi, xj):
-    """Six freedoms, 2 x 2 points at +-b with Coulomb slip, 64 blocks at a time.
+    """Step a row of blocks with six freedoms and 2 x 2 contact points at +-b with Coulomb slip, in
+    tiles of 64 blocks.
 
     motion : [tiles, 12 rows of 72], slides : [tiles, 8 rows of 64], forces : [6 rows of 72].
     """
@@ -53,7 +55,7 @@ def spatial(motion, slides, forces, steps, dt, k_n, k_s, b, mu, c, h, x, xi, xj)
 
 @numba.njit(cache=True, error_model="numpy", forceinline=True)
 def point(e, p, i, gap, dx, dz, k_n, k_s, mu, c):
-    """Advance the elastic slip of one point and return its tractions."""
+    """Advance the elastic slip of one point and return its forces, N."""
     t_n = -k_n * gap
     ex, ez = e[2 * p * LANES + i] + dx, e[(2 * p + 1) * LANES + i] + dz
     strength, t = max(c + mu * t_n, 0.0), k_s * np.sqrt(ex * ex + ez * ez)

@@ -1,6 +1,6 @@
-"""Rigid blocks in the plane and in space: against the row of blocks in space, by size, by threads.
+"""Rigid blocks in the plane and in space: rates against a row of blocks, by size and by threads.
 
-Square and cubic lattices of blocks of 1 m, joint sets at right angles, all of it in motion.
+The scenes are square and cubic lattices of 1 m blocks with orthogonal joint sets, all in motion.
 """
 
 from statistics import median
@@ -18,16 +18,16 @@ COULOMB = ELASTIC | {"friction_angle": 30.0, "cohesion": 1e5}
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
 SIZES = {2: (1024, 10_000, 102_400, 1_000_000), 3: (1000, 10_648, 103_823)}
 BLOCK_STEPS, LEAST = 5_000_000, 48  # block-steps and steps of one call
-POINTS = 4  # of a block: in the plane two contacts of two points, in the row one of 2 x 2
+POINTS = 4  # contact points per block: two contacts of two in the plane, one of 2 x 2 in the row
 
 
 def model_of(blocks: int, law: dict, dim: int = 2) -> Model:
-    """Return the constants of such a lattice, without the load."""
+    """Return the constants of such a lattice."""
     return prepared(lattice(blocks, law, {"loads": [PRESSURE]}, dim)).model
 
 
 def moving(model: Model, threads: int = 1) -> Timed:
-    """Return a function that takes steps of a lattice in motion, and its number of block-steps."""
+    """Return a function that steps a lattice in motion, and its number of block-steps."""
     state, samples = state_at_rest(model), samples_for(model, 0)
     state.v[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, state.v.shape)
     count = len(model.blocks.inertia)
@@ -40,8 +40,8 @@ def moving(model: Model, threads: int = 1) -> Timed:
 
 
 def main() -> None:
-    """Print rates per contact point over those of the row in space, what a block-step costs by the
-    number of blocks, and what two threads gain."""
+    """Print rates per contact point over those of the row in space, the cost of a block-step by
+    number of blocks, and the gain of two threads."""
     print("blocks in the plane, 2 points a contact, Coulomb slip, over the row in space,")
     print("2 x 2 points, both per contact point: point-steps/s")
     for blocks in (1024, 102_400):

@@ -1,4 +1,4 @@
-"""Cutting a domain into blocks, in the plane and in space: time and memory a block."""
+"""Cutting a domain into blocks, in the plane and in space: time and memory per block."""
 
 import resource
 from time import process_time
@@ -15,7 +15,7 @@ HOLE = np.stack([150 + 8 * np.cos(ANGLES), 150 + 8 * np.sin(ANGLES)], axis=1).to
 
 
 def sets(dim: int, **keys: object) -> list[JointSet]:
-    """Return two or three oblique sets; keys : of the last, which may end at the first."""
+    """Return two or three oblique joint sets; keys : of the last set."""
     attitudes = [{"dip": 5.0}, {"dip": 80.0}]
     if dim == 3:
         attitudes = [

@@ -1,6 +1,6 @@
-"""The continuum against plain dolfinx and scipy: blocks that are cubes, and rock cut at random.
+"""The continuum against plain dolfinx and scipy, for cubic blocks and randomly cut rock.
 
-All step the same motion, which is asserted before anything is timed.
+All compute the same motion, which is asserted before anything is timed.
 """
 
 from functools import partial
@@ -15,8 +15,8 @@ from timing import Timed, side_by_side
 from jointwave.continuum.stepping.leapfrog import products_for_steps
 from jointwave.continuum.stepping.product import product_for
 
-STEPS = 200  # of the motion that all must share, and of one call of the engine
-SAME = 1e-10  # of its largest displacement
+STEPS = 200  # of the compared motion, and of one call of the engine
+SAME = 1e-10  # largest difference over the largest displacement
 FEW = 10  # steps of one call of the others
 
 
@@ -37,7 +37,7 @@ def against_others(case: str) -> None:
 
 
 def products(body) -> tuple[Timed, Timed]:
-    """Return K u of the engine and of scipy."""
+    """Return the products K u of the engine and of scipy, for timing."""
     product, matrix = products_for_steps(body)[0], body.stiffness
     multiply = product_for(product.kind, body.components)
     times = numba.njit(lambda table, x, y: multiply(table, x, y))
@@ -57,7 +57,7 @@ def products(body) -> tuple[Timed, Timed]:
 
 
 def main() -> None:
-    """Print all of it."""
+    """Print the results of all cases."""
     for case in [*BLOCKS, *CUT]:
         against_others(case)
     for case in processes.CASES:

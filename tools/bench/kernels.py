@@ -1,4 +1,4 @@
-"""The kernels of rows of blocks against the same updates as bare loops, in turns, as ratios."""
+"""Rates of the kernels of rows of blocks over those of plain loops with the same updates."""
 
 import bare
 import numpy as np
@@ -17,7 +17,7 @@ SLIDES = {
 
 
 def bare_axial(scene, blocks: int) -> Timed:
-    """Return the bare loop of a damped row."""
+    """Return the plain loop of a damped row, for timing."""
     p = calibrate(scene)
     k = p.regular_stiffness * p.area
     steps = max(1, 5_000_000 // blocks)
@@ -27,7 +27,7 @@ def bare_axial(scene, blocks: int) -> Timed:
 
 
 def bare_spatial(scene, blocks: int) -> Timed:
-    """Return the bare loop of a row that slides."""
+    """Return the plain loop of a row with slip, for timing."""
     p = calibrate(scene)
     tiles, steps, dt = blocks // bare.LANES, max(1, 2_000_000 // blocks), 1e-5
     motion, slides = np.zeros((tiles, 12 * bare.ROW)), np.zeros((tiles, 8 * bare.LANES))

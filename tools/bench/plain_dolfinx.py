@@ -1,7 +1,7 @@
-"""Jointed rock as a dolfinx tutorial steps it: the internal force assembled in every step.
+"""Jointed rock stepped as in a dolfinx tutorial, with the internal force assembled in every step.
 
-The body, its UFL form, its joints and its loads are the engine's own. The force is assembled by a
-form compiled with -O2, or is the product of one scipy matrix; numpy moves the nodes.
+Body, UFL form, joints and loads are the engine's. The force is assembled from a form compiled with
+-O2, or is the product of a scipy matrix; numpy moves the nodes.
 """
 
 import inspect
@@ -19,7 +19,7 @@ from jointwave.continuum.stepping.problem import Problem
 
 
 class Steps:
-    """Leapfrog by numpy, whatever computes the rock's internal force.
+    """Leapfrog in numpy, for any function that computes the rock's internal force.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Steps:
 
 
 def assembled(plan: Plan, problem: Problem) -> Steps:
-    """Return the steps that assemble the internal force."""
+    """Return the steps with an assembled internal force."""
     found, space = plan.found, problem.body.space
     u = fem.Function(space, dtype=np.float64)
     region = found.blocks.body.region[problem.body.block]
@@ -74,7 +74,7 @@ def assembled(plan: Plan, problem: Problem) -> Steps:
 
 
 def multiplied(plan: Plan, problem: Problem) -> Steps:
-    """Return the steps that multiply the displacements by scipy's matrix."""
+    """Return the steps with the internal force from scipy's matrix."""
     matrix, u = -problem.body.stiffness, np.zeros(problem.body.stiffness.shape[0])
 
     def internal(force: np.ndarray) -> None:
@@ -84,7 +84,7 @@ def multiplied(plan: Plan, problem: Problem) -> Steps:
 
 
 def plainly(form: ufl.Form):
-    """Return a form compiled with -O2 and nothing else."""
+    """Return a form compiled with -O2 only."""
     key = "jit_params" if "jit_params" in inspect.signature(fem.form).parameters else "jit_options"
     options = {"cffi_extra_compile_args": ["-O2"]}
     return compiled(lambda: fem.form(form, dtype=np.float64, **{key: options}))

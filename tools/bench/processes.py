@@ -1,4 +1,4 @@
-"""Two processes over one: whole runs of the continuum under mpiexec.
+"""Rates of whole runs of the continuum under mpiexec: two processes over one.
 
 usage: mpiexec -n N python tools/bench/processes.py CASE (prints freedoms x steps a second)
 """
@@ -16,15 +16,15 @@ from jointwave.continuum import simulate
 from jointwave.continuum.plan import plan_of
 
 ROUNDS = 5
-#: Steps of a whole run, some seconds; size of the elements, m.
+#: By case: steps of a run of some seconds, and size of the elements, m.
 CASES = {"hexahedra of order 3": (2000, 1.0), "triangles of order 2": (500, 0.2)}
 
-#: In a container one is root, which Open MPI does not run as unless told twice.
+#: Open MPI runs as root, as in a container, only if both variables are set.
 AS_ROOT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def compared(case: str) -> None:
-    """Print the rates of two processes and of one, which take turns, and their ratio."""
+    """Print the rates of two processes and of one, measured in turn, and their ratio."""
     if shutil.which("mpiexec") is None:
         print("  two processes: no mpiexec here")
         return
@@ -39,7 +39,7 @@ def _under_mpi(case: str, count: int) -> float:
 
 
 def one_run(case: str) -> None:
-    """Run a case in all processes there are, and print its rate."""
+    """Run a case in all processes, and print its rate."""
     steps, size = CASES[case]
     dt = plan_of(scene_of(case, size)).choice.time.dt
     scene = scene_of(case, size, steps * dt)

@@ -1,4 +1,4 @@
-"""The cases of the continuum's benchmark, undamped and linear, and the engine's steps on them."""
+"""The undamped linear cases of the continuum's benchmark, and the engine's steps on them."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -18,18 +18,18 @@ LOAD = {"kind": "pressure", "side": "top", "shape": "sine", "period": 2e-3, "amp
 SCENE = Path(cases.__file__).parent / "rock-mass" / "random-network.toml"
 NETWORK = {"waves": [], "loads": [LOAD], "boundaries": {}, "record.energy": False}
 
-#: Of blocks that are cubes: dimension, number, elements in each direction of a block, order.
+#: Cases of cubic blocks: dimension, number, elements along each edge of a block, order.
 BLOCKS = {
     "quadrilaterals of order 2": (2, 100, 4, 2),
     "hexahedra of order 1": (3, 64, 4, 1),
     "hexahedra of order 3": (3, 64, 1, 3),
 }
-#: Of rock cut at random, 30 m x 30 m: size of triangles, m, and order.
+#: Cases of randomly cut rock, 30 m x 30 m: size of triangles, m, and order.
 CUT = {"triangles of order 1": (0.4, 1), "triangles of order 2": (0.8, 2)}
 
 
 class Engine(NamedTuple):
-    """The engine on a scene, at rest."""
+    """The continuum engine on a scene, at rest."""
 
     plan: Plan
     problem: Problem
@@ -54,7 +54,7 @@ def scene_of(case: str, size: float | None = None, duration: float = 0.01) -> Ro
 
 
 def engine_of(scene: RockMass, model: str = "jointed") -> Engine:
-    """Return the engine on a scene."""
+    """Return the continuum engine on a scene."""
     plan = plan_of(scene, model)
     problem = in_time(scene, plan.problem, plan.choice.time, None)
     time = plan.choice.time
@@ -62,7 +62,7 @@ def engine_of(scene: RockMass, model: str = "jointed") -> Engine:
 
 
 def assert_same(engine: Engine, others: list, steps: int, most: float) -> None:
-    """Stop unless all come to the same displacements; most : of the largest."""
+    """Assert that all reach the same displacements; most : difference over the largest one."""
     engine.march(0, steps)
     own = engine.steps.u
     for other in others:

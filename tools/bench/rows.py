@@ -1,4 +1,4 @@
-"""Rows and lattices of rigid blocks of any size, and functions that take the steps of rows."""
+"""Rows and lattices of rigid blocks of any number, and functions that step rows."""
 
 from pathlib import Path
 from typing import Any
@@ -16,19 +16,19 @@ from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
 from jointwave.dem.run import stepper
 
-BLOCK_STEPS = 20_000_000  # of one run
+BLOCK_STEPS = 20_000_000  # of one run, about
 LEAST = 64  # steps of one run
 ELASTIC = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 
 
 def changed(changes: dict, blocks: int = 1000) -> Scene:
-    """Return the paper's pillar with this number of blocks and some dotted keys changed."""
+    """Return the paper's pillar with a number of blocks and some dotted keys changed."""
     pillar = find("guo-li-2002/fig-03")
     return pillar_of(cases.load_variant(pillar, "", {"pillar.length": 0.5 * blocks, **changes}))
 
 
 def lattice(blocks: int, law: dict, tables: dict[str, Any], dim: int = 2) -> RockMass:
-    """Return a square or cubic lattice of about this number of 1 m blocks; tables : more of it."""
+    """Return a square or cubic lattice of about `blocks` 1 m blocks; tables : more of the scene."""
     side = max(2, round(blocks ** (1 / dim)))
     joints = {"spacing": 1.0, "through": [0.0] * dim} | law
     attitudes = [{"dip": 90.0}, {"dip": 0.0}]
@@ -46,8 +46,7 @@ def lattice(blocks: int, law: dict, tables: dict[str, Any], dim: int = 2) -> Roc
 
 
 def stretch(scene: Scene, threads: int = 1) -> Timed:
-    """Return a function that takes steps of a pillar under its load, and its number of
-    block-steps."""
+    """Return a function that steps a pillar under its load, and its number of block-steps."""
     dt = solver("dem").prepare(scene).dt
     samples = max(LEAST, BLOCK_STEPS // scene.block_count) * dt // scene.interval + 1
     tables = {

@@ -1,10 +1,10 @@
-"""The cost of starting: a warm run over importing numpy and numba, and a first run over a second.
+"""Start-up cost: a warm run over importing numpy and numba, and a first run over a second.
 
     python tools/bench/startup.py
 
-Two commands are run in turn, so that a machine whose speed drifts slows both; the median of the
-pairs' ratios is the figure to quote. A first run compiles its kernels into an empty cache: its
-processor time over that of the second is what compiling costs.
+Two commands run in turn, so that drift of the machine's speed affects both; quote the median of the
+ratios. A first run compiles its kernels into an empty cache: its processor time over that of the
+second is the cost of compiling.
 """
 
 import os
@@ -17,7 +17,7 @@ from time import perf_counter
 
 SCENE = "guo-li-2002/fig-03"
 BARE = (sys.executable, "-c", "import numpy, numba")
-#: Of the first-over-second ratio: the chain, the continuum and the row of blocks in space.
+#: Runs of the first-over-second ratio: the chain, the continuum, the row of blocks in space.
 FIRST = {
     "free pillar, dem": ("guo-li-2002/fig-03", "--engine", "dem"),
     "free pillar, continuum": ("guo-li-2002/fig-03", "--engine", "continuum"),
@@ -26,7 +26,7 @@ FIRST = {
 
 
 def seconds(*command: str, **environment: str) -> tuple[float, float]:
-    """Return the wall time of a command and the processor time that it took, s."""
+    """Return the wall time and the processor time of a command, s."""
     began, before = perf_counter(), getrusage(RUSAGE_CHILDREN)
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=os.environ | environment)
     after = getrusage(RUSAGE_CHILDREN)
@@ -40,7 +40,7 @@ def run_of(*scene: str, out: str) -> tuple[str, ...]:
 
 
 def first_over_second(*scene: str) -> tuple[float, float]:
-    """Return the processor time of a run with an empty cache and of the next with a full one, s."""
+    """Return the processor times of a run with an empty cache and of the next run, s."""
     with tempfile.TemporaryDirectory() as place:
         command = run_of(*scene, out=os.path.join(place, "out"))
         caches = {"XDG_CACHE_HOME": place, "NUMBA_CACHE_DIR": os.path.join(place, "numba")}
@@ -52,7 +52,7 @@ def main(pairs: int = 11) -> None:
     """Print both ratios."""
     with tempfile.TemporaryDirectory() as out:
         run = run_of(SCENE, out=out)
-        seconds(*run)  # compiles, where the cache is cold
+        seconds(*run)  # compiles if the cache is cold
         ratios = [seconds(*run)[0] / seconds(*BARE)[0] for _ in range(pairs)]
     print(
         f"jointwave run {SCENE}, warm, over python -c 'import numpy, numba': "

@@ -1,4 +1,4 @@
-"""Rates taken in turns, so that a machine whose speed drifts slows all alike."""
+"""Rates measured in turn, so that drift of the machine's speed affects all of them equally."""
 
 from collections.abc import Callable
 from statistics import median
@@ -7,13 +7,13 @@ from time import perf_counter
 ROUNDS = 9
 SHORTEST = 0.03  # s
 
-#: Takes steps, and returns the seconds that they took if not all of it counts; block-steps or
-#: freedom-steps of one call.
+#: A function that takes steps and returns their seconds, or None if its whole time counts; and the
+#: block-steps or freedom-steps of one call.
 Timed = tuple[Callable[[], float | None], int]
 
 
 def rate(take: Callable[[], float | None], steps: int) -> float:
-    """Return steps a second, from calls that take long enough to be timed."""
+    """Return steps per second, from as many calls as are needed for timing."""
     calls, spent = 0, 0.0
     while spent < SHORTEST:
         began = perf_counter()
@@ -23,14 +23,14 @@ def rate(take: Callable[[], float | None], steps: int) -> float:
 
 
 def in_turns(*rivals: Timed) -> list[tuple[float, ...]]:
-    """Return the rates of all in every round, after a call of each that compiles."""
+    """Return the rates of all in every round, after one call of each that compiles."""
     for take, _ in rivals:
         take()
     return [tuple(rate(*one) for one in rivals) for _ in range(ROUNDS)]
 
 
 def in_words(pairs: list[tuple[float, ...]]) -> str:
-    """Return the medians of two rates taken in turns and of their ratios, with least and most."""
+    """Return as text the medians of two rates, and the median and range of their ratios."""
     one, other = (median(rates) for rates in zip(*pairs, strict=True))
     ratios = [a / b for a, b in pairs]
     least, middle, most = (f"{f(ratios):.2f}" for f in (min, median, max))
@@ -38,5 +38,5 @@ def in_words(pairs: list[tuple[float, ...]]) -> str:
 
 
 def side_by_side(label: str, one: Timed, other: Timed) -> None:
-    """Time two in turns and print both rates and the ratio one / other."""
+    """Time two functions in turn; print both rates and the ratio one / other."""
     print(f"  {label:42s} {in_words(in_turns(one, other))}", flush=True)

@@ -1,4 +1,4 @@
-"""The Python interface as a page: signatures and docstrings, read without importing anything."""
+"""The Python interface as a page: signatures and docstrings, from sources without importing."""
 
 import ast
 import re
@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 Documented = ast.FunctionDef | ast.ClassDef
-#: A line of a docstring that describes a parameter or attribute: `name, other : what`.
+#: A line of a docstring that describes parameters or attributes: `name, other : what`.
 ENTRY = re.compile(r"^(\w[\w, *]*) : (.*)$")
-#: A further one in the same line.
+#: A second description in the same line.
 SECOND = re.compile(r"\. (\w+(?:, \w+)*) : ")
 UNDERLINE = re.compile(r"^-{3,}$")
 
@@ -16,8 +16,8 @@ UNDERLINE = re.compile(r"^-{3,}$")
 def page(root: Path, line: str) -> str:
     """Return the public functions and classes of a module as Markdown.
 
-    line : the module's dotted name, `as` the name that users import from, then what is wanted,
-        defined there or imported.
+    line : the module's dotted name, optionally `as` and the module that users import, then the
+        names to document, defined or imported there.
     """
     module, *wanted = line.split()
     shown, wanted = (wanted[1], wanted[2:]) if wanted[0] == "as" else (module, wanted)
@@ -25,7 +25,7 @@ def page(root: Path, line: str) -> str:
 
 
 def _definition(root: Path, module: str, name: str) -> Documented:
-    """Return the definition of a name of a module, which may import it from another one."""
+    """Return the definition of a name in a module, or in the module that it imports it from."""
     at = root / module.removeprefix("jointwave.").replace(".", "/")
     files = at.with_suffix(".py"), at / "__init__.pyi", at / "__init__.py"
     source = next(file for file in files if file.is_file()).read_text(encoding="utf-8")
@@ -59,7 +59,7 @@ def _signature(node: Documented) -> str:
 
 
 def _arguments(found: ast.arguments) -> Iterator[str]:
-    """Yield each argument with its type and default; those by name alone are not told apart."""
+    """Yield each argument with its type and default; keyword-only arguments are not marked."""
     defaults = [None] * (len(found.args) - len(found.defaults)) + found.defaults
     pairs = [*zip(found.args, defaults, strict=True)]
     pairs += zip(found.kwonlyargs, found.kw_defaults, strict=True)

@@ -1,10 +1,10 @@
-"""The commands and their options, from the program itself."""
+"""The commands and their options as a page, from the program itself."""
 
 from typing import Any
 
 
 def page() -> str:
-    """Return every command with what it says of itself and its options."""
+    """Return every command with its help and its options."""
     return "\n\n".join(_section(name, command) for name, command in all_commands().items())
 
 

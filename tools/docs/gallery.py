@@ -1,4 +1,4 @@
-"""The gallery: runs the lines of its pages (of NAME ...), writes their pictures and scenes anew."""
+"""Run the code of the gallery's pages (of NAME ...), and update their pictures and scenes."""
 
 import re
 import shutil
@@ -17,12 +17,13 @@ CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
 SCENE = re.compile(r"```toml title=\"([^\"]+)\"\n(.*?)```", re.DOTALL)
 SHIPPED = re.compile(r"is shipped as `([^`]+)`")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)]+)\)")
-COLOURS, SMALL = 128, (640, 360)  # of a palette; pixels of a film
+COLOURS, SMALL = 128, (640, 360)  # size of the palette; size of a film, pixels
 FILM = ("--frames", "25", "--seconds", "2.5")
 
 
 class Page(NamedTuple):
-    """A page: its scene's file, as it is shown and as it is kept, its lines, and its pictures."""
+    """A page: the name of its scene's file, the scene as shown and as stored, its code and
+    pictures."""
 
     path: Path
     file: str
@@ -42,14 +43,14 @@ def read(path: Path) -> Page:
 
 
 def run(page: Page, folder: Path) -> None:
-    """Run a page's lines in a folder, beside its scene."""
+    """Run a page's code in a folder with its scene."""
     (folder / page.file).write_text(page.kept, encoding="utf-8")
     with chdir(folder):
         exec(compile(page.code, str(page.path), "exec"), {})
 
 
 def make(page: Page, folder: Path) -> None:
-    """Write a page's scene and its pictures anew."""
+    """Update a page's scene and pictures."""
     whole, text = f'```toml title="{page.file}"\n{page.kept}```', page.path.read_text()
     page.path.write_text(SCENE.sub(lambda _: whole, text))
     run(page, folder)

@@ -1,9 +1,9 @@
-"""What mkdocs calls while it builds: generated parts of pages, and formulas as MathML.
+"""Hooks of mkdocs: generated parts of pages, and formulas as MathML.
 
 A line `<!-- generated: NAME -->` or `<!-- generated: NAME ARGUMENT -->` of a page is followed by
-what `GENERATED[NAME]` returns, up to a line `<!-- end -->` where the page has it written out.
-As a program it writes out the pages of docs/reference. Browsers show MathML by themselves, so no
-script and no network is needed to read the formulas.
+the text of `GENERATED[NAME]`, up to a line `<!-- end -->` if the page contains that text.
+Run as a program, it writes the text into the pages of docs/reference. Browsers show MathML without
+scripts or network.
 """
 
 import re
@@ -19,7 +19,7 @@ from jointwave.cases.schema.rock_mass import RockMass
 
 ROOT = Path(__file__).parents[2]
 
-#: What can stand in a page, by name; each is a function of the rest of the line.
+#: Generators of parts by name; each is a function of the rest of the line.
 GENERATED = {
     "scene-reference": lambda _: scene_reference.page(),
     "rock-mass-reference": lambda _: scene_reference.page(RockMass, "rock-"),
@@ -29,26 +29,26 @@ GENERATED = {
 }
 MARK = re.compile(
     r"^<!-- generated: (?P<name>\S+) ?(?P<argument>[^\n]*?) -->$"
-    r"(?:\n\n.*?\n<!-- end -->$)?",  # written out
+    r"(?:\n\n.*?\n<!-- end -->$)?",  # text written by this program
     re.MULTILINE | re.DOTALL,
 )
 WRITTEN = "<!-- generated: {} -->\n\n{}\n\n<!-- end -->"
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 
 
-#: Functions, which MathML sets without any space around them.
+#: Functions, after which MathML sets no space.
 FUNCTION = re.compile(r"<mi>(sin|cos|tan|cosh|arcsin|log|tanh)</mi>(?!<mo)")
-#: Bars on both sides of something, which MathML would set and stretch like operators.
+#: Vertical bars, which MathML would space and stretch like operators.
 BAR = re.compile(r"<mo[^>]*>(&#x0007C;|&#x02016;)</mo>")
 
 
 def generated(markdown: str) -> str:
-    """Return a page with its generated parts in place; raises KeyError for an unknown one."""
+    """Return a page with its generated parts inserted; raises KeyError for an unknown part."""
     return MARK.sub(_part, markdown)
 
 
 def written_out(markdown: str) -> str:
-    """Return a page with its generated parts between the lines that mark them."""
+    """Return a page with its generated parts between marks, so that they can be updated."""
     return MARK.sub(
         lambda found: WRITTEN.format(f"{found['name']} {found['argument']}".strip(), _part(found)),
         markdown,
@@ -73,7 +73,7 @@ def mathml(html: str) -> str:
 
 
 def on_page_markdown(markdown: str, **_) -> str:
-    """Put the generated parts into a page before it is rendered."""
+    """Insert the generated parts into a page before it is rendered."""
     return generated(markdown)
 
 

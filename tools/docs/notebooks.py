@@ -1,8 +1,8 @@
-"""The examples as pages: their text, their code, and what came out when they were last run.
+"""The examples as pages: text, code, and outputs of the last run.
 
     python tools/docs/notebooks.py
 
-runs those that have changed since and keeps them as out/examples/NAME.ipynb, which Jupyter opens.
+runs the examples that have changed since, and saves them as out/examples/NAME.ipynb for Jupyter.
 """
 
 import json
@@ -38,7 +38,7 @@ def _bare(comment: str) -> str:
 
 
 def page(name: str, kept: Path = KEPT) -> str:
-    """Return an example as Markdown, with its outputs where it has been run as it stands."""
+    """Return an example as Markdown, with its outputs if the same code has been run."""
     found, outputs = cells(name), _outputs(name, kept)
     path = f"examples/{name}.py"
     head = f"A notebook in jupytext's percent format: `{path}`.\n"
@@ -48,7 +48,7 @@ def page(name: str, kept: Path = KEPT) -> str:
         parts.append(cell.source if cell.is_text else f"```python\n{cell.source}\n```")
         if not cell.is_text:
             parts += [_shown(output) for output in _joined(next(code, []))]
-    title = parts.index(found[0].source)  # what it is before what it is called
+    title = parts.index(found[0].source)  # the title comes first
     parts.insert(0, parts.pop(title))
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -65,7 +65,7 @@ def _outputs(name: str, kept: Path) -> list[list[dict[str, Any]]] | None:
 
 
 def _joined(outputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return outputs with what was printed in several goes as one."""
+    """Return outputs with consecutive printed texts joined."""
     found: list[dict[str, Any]] = []
     for output in outputs:
         text = "".join(output.get("text", ""))
@@ -77,7 +77,7 @@ def _joined(outputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _shown(output: dict[str, Any]) -> str:
-    """Return an output as Markdown: a picture, or the text that it is."""
+    """Return an output as Markdown: a picture or text."""
     data = output.get("data", {})
     if "image/png" in data:
         picture = "".join(data["image/png"]).replace("\n", "")
@@ -89,14 +89,14 @@ def _shown(output: dict[str, Any]) -> str:
 
 
 def run(name: str, kept: Path = KEPT) -> Path:
-    """Run an example in a kernel of its own and keep it; raises where a cell fails."""
+    """Run an example in its own kernel and save it; raises if a cell fails."""
     import jupytext
     import nbformat
     from nbclient import NotebookClient
 
     notebook = jupytext.read(EXAMPLES / f"{name}.py")
     kept.mkdir(parents=True, exist_ok=True)
-    quiet = ["--IPKernelApp.log_level=ERROR"]  # it warns that it listens, to this machine alone
+    quiet = ["--IPKernelApp.log_level=ERROR"]  # no warning about a port open to this machine only
     client = NotebookClient(notebook, kernel_name="python3", timeout=600, extra_arguments=quiet)
     client.execute(cwd=str(kept))
     nbformat.write(notebook, kept / f"{name}.ipynb")

@@ -14,8 +14,8 @@ HEAD = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |"
 
 
 def page(model: type[BaseModel] = Scene, prefix: str = "") -> str:
-    """Return the reference of a kind of scene: a section for every table, in the order of the
-    models. prefix : of the anchors, so that both kinds stand on one page."""
+    """Return the reference of a kind of scene, a section per table in the order of the models.
+    prefix : of the anchors, so that both kinds fit on one page."""
     return "\n\n".join(_section(table, prefix) for table in tables(model=model))
 
 
@@ -40,7 +40,7 @@ def _row(key: str, name: str, field: FieldInfo, comment: str, prefix: str) -> st
 
 
 def in_words_of_table(field: FieldInfo) -> str:
-    """Return what holds a table: one, or any number of them."""
+    """Return whether a key holds one table or a list of tables, in words."""
     return "any number of tables" if get_origin(field.annotation) is list else "table"
 
 
