@@ -13,12 +13,12 @@
 # %% [markdown]
 # # Calibrating a joint from a measured waveform
 #
-# Behind a soft joint a waveform was measured, with noise. How stiff is the joint, and how well is
-# that known? The rigid-block engine takes milliseconds, so that least squares can ask it as often
-# as it likes.
+# A waveform was measured behind a soft joint, with noise. How stiff is the joint, and how
+# accurately is that known? A run of the rigid-block engine takes milliseconds, so least squares can
+# call it many times.
 #
 # Two numbers are unknown: the stiffness and the strength of the source. The measurement here is
-# made from known ones, so that the answer can be checked.
+# computed from known values, so that the answer can be checked.
 
 # %%
 from typing import NamedTuple
@@ -38,14 +38,14 @@ tables = {
     "load": {
         "shape": "ricker",
         "amplitude": 5.0e5,  # Pa
-        "quantity": "incident-stress",  # of the wave that enters
+        "quantity": "incident-stress",  # of the incident wave
         "period": 0.01,  # s
     },
     "ends": {"start": "matched", "end": "matched"},
     "time": {"duration": 0.04},
     "record": {"stress": [14.0], "interval": INTERVAL},
 }
-STIFFNESS, STRENGTH, NOISE = 4.0e8, 1.3, 0.02e6  # Pa (S K_n), of the load's amplitude, Pa
+STIFFNESS, STRENGTH, NOISE = 4.0e8, 1.3, 0.02e6  # Pa (S K_n), factor of the amplitude, Pa
 
 
 def scene(stiffness):
@@ -61,7 +61,7 @@ def waveform(parameters):
 
 
 def measure(seed):
-    """Return the waveform of the true joint with the noise of this seed [time], Pa."""
+    """Return the waveform of the true joint with random noise [time], Pa."""
     exact = waveform((np.log10(STIFFNESS), STRENGTH))
     return exact + np.random.default_rng(seed).normal(scale=NOISE, size=exact.size)
 
@@ -69,23 +69,23 @@ def measure(seed):
 # %% [markdown]
 # ## The fit and its interval
 #
-# Near the best fit the waveform is almost linear in the parameters. With the Jacobian $J$ there
-# and the variance of the residuals $s^2 = r^T r / (n - p)$, the parameters scatter with the
-# covariance $s^2 (J^T J)^{-1}$, and Student's $t$ with $n - p$ degrees of freedom gives the
+# Near the best fit the waveform is almost linear in the parameters. With the Jacobian $J$ at the
+# best fit and the variance of the residuals $s^2 = r^T r / (n - p)$, the covariance of the
+# parameters is $s^2 (J^T J)^{-1}$, and Student's $t$ with $n - p$ degrees of freedom gives the
 # interval (Bates & Watts, *Nonlinear Regression Analysis and Its Applications*, 1988).
 
 
 # %%
 class Fit(NamedTuple):
-    """Parameters [2], and how far their interval reaches to either side [2]."""
+    """Best parameters [2], and half widths of their intervals [2]."""
 
     best: np.ndarray
     reach: np.ndarray
 
 
 def fit(measured, confidence=0.95, start=(9.0, 1.0)):
-    """Return what fits a waveform [time] best, with its interval."""
-    scale = np.abs(measured).max()  # of the order of one, as the optimiser likes it
+    """Return the parameters that best fit a waveform [time], with their intervals."""
+    scale = np.abs(measured).max()  # residuals of the order of one suit the optimiser
     found = least_squares(lambda x: (waveform(x) - measured) / scale, start, diff_step=1e-4)
     freedom = measured.size - found.x.size
     covariance = 2 * found.cost / freedom * np.linalg.inv(found.jac.T @ found.jac)
@@ -114,14 +114,14 @@ rest.set(xlabel="time (ms)", ylabel="measured less fitted (MPa)")
 plt.show()
 
 # %% [markdown]
-# ## Does the interval hold what it promises?
+# ## Is the interval right?
 #
-# Measured again and again, the true stiffness must lie inside in about 95 of 100 cases:
+# In repeated measurements the true stiffness must lie inside the interval in about 95 of 100 cases:
 
 
 # %%
 def is_inside(seed):
-    """Return whether the interval of a measurement holds the true stiffness."""
+    """Return whether the interval of a measurement contains the true stiffness."""
     one = fit(measure(seed))
     return bool(abs(one.best[0] - np.log10(STIFFNESS)) <= one.reach[0])
 
@@ -131,11 +131,11 @@ print(f"{sum(inside)} of {len(inside)} intervals contain the true stiffness")
 assert sum(inside) >= 14  # fewer happen once in 30,000 times, if the intervals are right
 
 # %% [markdown]
-# ## What the interval does not know
+# ## What the interval does not include
 #
-# Noise is not all. The same joint in *deformable* rock, heard without any noise, is fitted with
-# another stiffness: the interval says how well the number is known if the model is right, the
-# distance between the engines what that is worth.
+# Noise is not the only error. For the same joint in *deformable* rock, measured without noise, the
+# fit gives another stiffness. The interval says how accurate the number is if the model is right;
+# the difference between the engines shows the error of the model.
 
 # %%
 rock = STRENGTH * jw.simulate(scene(STIFFNESS), "jointed-bar").stress.values[0]
@@ -144,7 +144,7 @@ print(f"heard through deformable rock: {10 ** (other.best[0]) / STIFFNESS - 1:+.
 assert abs(10 ** other.best[0] / STIFFNESS - 1) < 0.05
 
 # %% [markdown]
-# Hardly anything of the waveform is left over: a good fit does not show that the model is another.
+# The residual is tiny: a good fit does not reveal that the model is wrong.
 
 # %%
 figure, ax = plt.subplots(layout="constrained")

@@ -13,8 +13,8 @@
 # %% [markdown]
 # # A first scene
 #
-# The free pillar of Guo & Li (2002): a hundred blocks, a pulse of 10 ms, both ends free. Both
-# engines simulate it, exact solutions say how far from the truth each of them is.
+# The free pillar of Guo & Li (2002) has a hundred blocks, both ends are free, and the pulse lasts
+# 10 ms. Both engines simulate it; exact solutions give the error of each.
 
 # %%
 import jointwave as jw
@@ -25,8 +25,8 @@ print(scene.title, "-", scene.pillar.block_count, "blocks")
 # %% [markdown]
 # ## Simulate
 #
-# Each engine returns an `xarray.Dataset`, the same for both: stress in Pa on the sections that the
-# scene records, positive in compression, and the energies.
+# Both engines return an `xarray.Dataset` of the same form: stress in Pa, positive in compression,
+# at the recorded sections, and the energies.
 
 # %%
 blocks = jw.simulate(scene, "dem")
@@ -34,17 +34,17 @@ rock = jw.simulate(scene, "continuum-jointed")
 blocks
 
 # %% [markdown]
-# The waveforms on every section lie on top of each other, but not quite:
+# The waveforms at every section nearly coincide:
 
 # %%
 blocks.jw.plot(rock)
 
 # %% [markdown]
-# ## Who is right?
+# ## Which engine is right?
 #
 # `lattice` is the exact motion of the rigid blocks, `jointed-bar` that of elastic rock with all
-# joints. The distance of an engine to the solution of its own model is its *numerical* error; the
-# distance between the models is the *modelling* error, which no smaller step removes.
+# joints. The misfit of an engine from the exact solution of its own model is its *numerical* error;
+# the misfit between the models is the *modelling* error, which a smaller step does not reduce.
 
 # %%
 lattice, bar = jw.simulate(scene, "lattice"), jw.simulate(scene, "jointed-bar")
@@ -54,7 +54,7 @@ print(f"blocks, modelling error  {jw.misfit(lattice, bar):.2%}")
 assert jw.misfit(blocks, lattice) < 0.005 < jw.misfit(lattice, bar)
 
 # %% [markdown]
-# `jw.compare` does all of that at once, for every pair and every receiver:
+# `jw.compare` does all this in one call, for every pair and every receiver:
 
 # %%
 for row in jw.compare(scene).rows:
@@ -63,9 +63,9 @@ for row in jw.compare(scene).rows:
         print(f"{pair.one:20} {pair.other:20} {pair.kind:16} {found.misfit:8.3%}")
 
 # %% [markdown]
-# ## Where the energy is
+# ## The energy balance
 #
-# Work that the load has put in is kinetic or elastic: nothing else is in this scene.
+# The work of the load becomes kinetic and elastic energy only: nothing in this scene dissipates it.
 
 # %%
 import matplotlib.pyplot as plt

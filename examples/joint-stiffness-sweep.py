@@ -13,13 +13,13 @@
 # %% [markdown]
 # # Joint stiffness against the transmission formula
 #
-# A joint of stiffness $K$ between half-spaces of impedance $Z$ passes, of a harmonic wave
-# (Schoenberg 1980; Pyrak-Nolte, Myer & Cook 1990),
+# The transmission coefficient of a joint of stiffness $K$ between half-spaces of impedance $Z$, for
+# a harmonic wave, is (Schoenberg 1980; Pyrak-Nolte, Myer & Cook 1990)
 #
 # $$ |T| = \frac{1}{\sqrt{1 + (\omega Z / 2K)^2}} . $$
 #
-# One pulse holds many frequencies: the spectrum behind the joint over that without the joint is
-# $T$ at all of them. A sweep over four stiffnesses, by both engines, then lies on one curve over
+# A pulse contains many frequencies: the ratio of the spectra with and without the joint is $|T|$ at
+# all of them. The results of both engines for four stiffnesses must then lie on one curve over
 # $K / \omega Z$.
 
 # %%
@@ -29,7 +29,7 @@ import numpy as np
 import jointwave as jw
 
 ENGINES = {"dem": "rigid blocks", "continuum-equivalent": "homogenised rock"}
-PERIOD = 0.02  # s, of the pulse's peak frequency
+PERIOD = 0.02  # s, one over the pulse's peak frequency
 tables = {
     "title": "One joint between half-spaces",
     "pillar": {"length": 40.0, "side": 0.5, "block": 0.5},
@@ -37,7 +37,7 @@ tables = {
     "load": {
         "shape": "ricker",
         "amplitude": 1.0e6,  # Pa
-        "quantity": "incident-stress",  # of the wave that enters
+        "quantity": "incident-stress",  # of the incident wave
         "period": PERIOD,  # s
     },
     "ends": {"start": "matched", "end": "matched"},
@@ -52,9 +52,9 @@ print(f"K'_n of an ordinary joint {rock.regular_stiffness:.4g} Pa/m")
 # %% [markdown]
 # ## The sweep
 #
-# The homogenised rock holds an ordinary joint already where the soft one is. What counts is the
-# compliance that the soft joint adds, $1/K = 1/K'_n(\text{soft}) - 1/K'_n$: the layer is chosen to
-# add just $1/K$.
+# The homogenised rock already contains an ordinary joint at the position of the soft one, so $K$ is
+# the stiffness of the added compliance, $1/K = 1/K'_n(\text{soft}) - 1/K'_n$. The layer is chosen
+# to add just $1/K$.
 
 
 # %%
@@ -82,9 +82,9 @@ for engine in ENGINES:
         measured[engine, stiffness] = omega[heard], abs(passed / incident)[heard]
 
 # %% [markdown]
-# ## Beside the formula
+# ## Comparison with the formula
 #
-# The largest distance of any frequency from the formula, by stiffness:
+# The largest difference from the formula at any frequency, for each stiffness:
 
 # %%
 print("K (Pa/m)     rigid blocks  homogenised rock")
@@ -100,7 +100,7 @@ for stiffness in stiffnesses:
 assert worst < 0.02
 
 # %% [markdown]
-# All of them lie on one curve:
+# All results lie on one curve:
 
 # %%
 figure, ax = plt.subplots(layout="constrained")

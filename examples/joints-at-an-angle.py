@@ -13,11 +13,12 @@
 # %% [markdown]
 # # Waves at joints, by angle
 #
-# A wave that meets a joint at an angle leaves as four: P and S are reflected, P and S transmitted.
-# `jw.transmission` is the table of their particle velocities over that of the incident wave, in
-# closed form and by both engines.
+# A wave that meets a joint at an angle produces four waves: reflected P and S, and transmitted P
+# and S. `jw.transmission` returns the ratios of their particle velocities to that of the incident
+# wave, in closed form and from both engines.
 #
-# The scene is shipped: one joint in rock, $K_n \approx Z_p \omega$ and $K_s \approx Z_s \omega$.
+# The shipped scene has one joint in rock, with $K_n \approx Z_p \omega$ and
+# $K_s \approx Z_s \omega$.
 
 # %%
 import matplotlib.pyplot as plt
@@ -31,13 +32,13 @@ jw.transmission(scene, [0, 20, 40, 60]).to_dataframe().round(3)
 # %% [markdown]
 # ## Is it right?
 #
-# At normal incidence the formula of one joint is short (Pyrak-Nolte, Myer & Cook 1990), with
+# At normal incidence the formula for one joint is simple (Pyrak-Nolte, Myer & Cook 1990), with
 # $\kappa = K_n / Z_p \omega$:
 #
 # $$ |T| = \frac{2 \kappa}{\sqrt{1 + 4 \kappa^2}} . $$
 #
-# At any angle the energy of the four waves must add up to that which comes in. A wave of amplitude
-# $A$ carries $\rho c A^2 \cos\theta$ through the joint's plane.
+# At any angle the energy of the four waves must equal the incident energy. A wave of amplitude $A$
+# carries $\rho c A^2 \cos\theta$ through the joint's plane.
 
 # %%
 density, p_speed, s_speed = 2600.0, np.sqrt(6e10 / 2600.0), np.sqrt(2e10 / 2600.0)
@@ -57,8 +58,8 @@ assert abs(energy - 1).max() < 1e-9
 # %% [markdown]
 # ## The engines
 #
-# Each angle is a run: a pulse in a domain with this rock and this joint, in which the amplitudes of
-# the five waves are fitted to the motion at 8 points. `residual` is what they do not explain.
+# Each angle is a separate run: a pulse in a domain with this rock and joint. The amplitudes of the
+# five waves are fitted to the motion at 8 points; `residual` is the part that they do not explain.
 
 # %%
 solvers = ["dem", "continuum-jointed"]

@@ -13,13 +13,13 @@
 # %% [markdown]
 # # Rock of your own, as UFL forms
 #
-# The continuum is a dolfinx model, and its rock is two bilinear forms of UFL: mass and stiffness.
-# A script can give its own in place of `[rock]`. Two examples: rock that stiffens with depth, and
-# transversely isotropic rock. Each is checked against a wave speed that is known.
+# The continuum is a dolfinx model, and its rock is two bilinear UFL forms: mass and stiffness. A
+# script can replace those of `[rock]` by its own. Two examples follow: rock that stiffens with
+# depth, and transversely isotropic rock. Each is checked against a known wave speed.
 #
-# The scene is a column 60 m high that is periodic from left to right, so that a pressure on its top
-# sends a plane wave down. Its base is quiet: it absorbs the wave. `[rock]` is still there. It
-# decides what a script leaves open, such as the size of elements where the scene gives none.
+# The scene is a column 60 m high with periodic left and right sides, so that a pressure on its top
+# sends a plane wave down. Its quiet base absorbs the wave. `[rock]` is still needed for settings
+# that the script does not give, such as the default element size.
 
 # %%
 import matplotlib.pyplot as plt
@@ -46,7 +46,7 @@ scene = jw.load(column)
 
 
 def delay(one, other, times):
-    """Return by how much (s) a waveform is later than another: where they correlate best."""
+    """Return the delay of a waveform relative to another by cross-correlation, s."""
     step = float(times[1] - times[0])
     found = np.correlate(one, other, "full")
     k = int(found.argmax())
@@ -58,8 +58,8 @@ def delay(one, other, times):
 # ## Rock that stiffens with depth
 #
 # The modulus $M = \lambda + 2\mu$ grows as $(1 + d/h)^2$ with the depth $d$, and the P speed
-# $c = \sqrt{M/\varrho}$ as $c_0 (1 + d/h)$. The rock is a function of the scene and of dolfinx's
-# space of displacements. `isotropic` takes numbers or expressions of UFL, here of
+# $c = \sqrt{M/\varrho}$ as $c_0 (1 + d/h)$. The rock is a function of the scene and of the dolfinx
+# space of displacements. `isotropic` takes numbers or UFL expressions, here of
 # `SpatialCoordinate`:
 
 # %%
@@ -93,9 +93,10 @@ for depth, wave in zip(DEPTHS[1:], waves[1:], strict=True):
 # %% [markdown]
 # ## Transversely isotropic rock
 #
-# Bedding makes rock softer across it than along it. The stiffness tensor $C_{ijkl}$ is given in the
-# axes of the bedding, which dips at 30 degrees, and turned. Plane waves down the column then have
-# the speeds and directions of Christoffel's equation, $C_{ijkl}\, n_j n_l\, g_k = \varrho c^2 g_i$:
+# Bedded rock is softer across the bedding than along it. The stiffness tensor $C_{ijkl}$ is given
+# in the axes of the bedding, which dips at 30 degrees, and rotated. Plane waves down the column
+# have the speeds and directions of Christoffel's equation,
+# $C_{ijkl}\, n_j n_l\, g_k = \varrho c^2 g_i$:
 
 # %%
 ALONG, ACROSS, BETWEEN, SHEAR = 40e9, 20e9, 8e9, 9e9  # C11, C33, C13, C44, Pa
@@ -119,7 +120,7 @@ speeds = np.sqrt(values / DENSITY)
 print(f"quasi-S {speeds[0]:.0f} m/s, quasi-P {speeds[1]:.0f} m/s")
 
 # %% [markdown]
-# The vertical pressure sends both waves down. Each is the motion along its own direction:
+# The vertical pressure sends both waves down. Each wave is the motion along its own polarisation:
 
 # %%
 result = continuum.simulate(scene, rock=bedded)
@@ -138,8 +139,8 @@ plt.show()
 
 # %% [markdown]
 # Stress at receivers follows from the same forms, with the mean moduli of each cell. So do the
-# dashpots of quiet sides: the root of $\varrho\, C_{ijkl} n_j n_l$ absorbs both plane waves at
-# normal incidence:
+# dashpots of quiet sides: the square root of $\varrho\, C_{ijkl} n_j n_l$ absorbs both plane waves
+# at normal incidence:
 
 # %%
 largest = abs(result.velocity).max()
@@ -148,10 +149,10 @@ print(f"left of the waves once they have gone: {float(left / largest):.1e}")
 assert left < 1e-3 * largest
 
 # %% [markdown]
-# ## Forms by hand
+# ## Explicit forms
 #
-# `isotropic` and `anisotropic` are short for `Forms(mass, stiffness, damping)`. Any form that is
-# bilinear in the strains of both will do, here isotropic rock written out:
+# `isotropic` and `anisotropic` return `Forms(mass, stiffness, damping)`. Any stiffness bilinear in
+# the strains of the trial and test functions is allowed, here isotropic rock:
 
 # %%
 from ufl import dx, grad, inner, sym, tr
@@ -167,7 +168,7 @@ def by_hand(scene, space):
 
 result = continuum.simulate(scene, rock=by_hand)
 stress = result.stress.sel(stress_component="yy")[1]
-wave = -np.sqrt(DENSITY * 3e10) * result.velocity.sel(axis="y")[1]  # of a wave that runs down
+wave = -np.sqrt(DENSITY * 3e10) * result.velocity.sel(axis="y")[1]  # stress of a downward wave
 assert abs(stress - wave).max() < 5e-3 * abs(wave).max()
 plt.plot(1e3 * result.time, 1e-6 * stress, label="stress")
 plt.plot(1e3 * result.time, 1e-6 * wave, "--", label="impedance times velocity")

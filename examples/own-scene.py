@@ -13,7 +13,7 @@
 # %% [markdown]
 # # A scene of your own
 #
-# A scene is a few tables: as a TOML file, which the command `jointwave` takes, or as a dictionary.
+# A scene is a set of tables: a TOML file, which the command `jointwave` reads, or a dictionary.
 
 # %%
 import jointwave as jw
@@ -31,7 +31,7 @@ tables = {
     "load": {
         "shape": "ricker",
         "amplitude": 5.0e5,  # Pa
-        "quantity": "incident-stress",  # of the wave that enters
+        "quantity": "incident-stress",  # of the incident wave
         "period": 0.01,  # s
     },
     "ends": {"start": "matched", "end": "matched"},
@@ -41,7 +41,7 @@ tables = {
 scene = jw.load(tables)
 
 # %% [markdown]
-# A scene that contradicts itself is refused, with what would be allowed:
+# A scene that contradicts itself is refused; the message says what is allowed:
 
 # %%
 try:
@@ -52,9 +52,9 @@ else:
     raise AssertionError("a block that does not divide the pillar was taken")
 
 # %% [markdown]
-# ## What applies to it
+# ## Which solvers apply
 #
-# Everything that can solve the scene, and why the rest cannot:
+# All solvers, with the reason for those that do not apply:
 
 # %%
 for name, reason in jw.solvers(scene).items():
@@ -63,8 +63,8 @@ for name, reason in jw.solvers(scene).items():
 # %% [markdown]
 # ## The wave in space and time
 #
-# `record.fields` keeps snapshots of the whole pillar. Every block of the rigid-block engine is one
-# cell, so that its stress over time and y is an array as it is:
+# `record.fields` saves snapshots of the whole pillar. Every rigid block is one cell, so that the
+# stress over time and y is a plain array:
 
 # %%
 import matplotlib.pyplot as plt
@@ -78,8 +78,8 @@ plt.axvline(8.0, color="black", linewidth=0.8, linestyle=":")
 plt.show()
 
 # %% [markdown]
-# The layer at 8 m reflects part of the pulse, and passes the slow part of it. What it sends back
-# is what stands in front of it beyond the pulse itself; between the two no energy is lost:
+# The layer at 8 m reflects part of the pulse and transmits mainly low frequencies. The reflected
+# wave is the stress in front of the layer minus the incident pulse. No energy is lost:
 
 # %%
 without = jw.simulate(jw.load(tables | {"soft_layers": []}))
@@ -94,7 +94,7 @@ plt.show()
 
 
 def energy(wave):
-    """Return the energy of a wave that runs one way, but for a factor."""
+    """Return the energy of a wave that travels in one direction, except for a factor."""
     return float((wave**2).sum())
 
 
@@ -103,9 +103,9 @@ print(f"reflected {shares[0]:.1%}, passed {shares[1]:.1%}")
 assert abs(sum(shares) - 1) < 0.01
 
 # %% [markdown]
-# ## Hold it to a bound
+# ## Test it against a bound
 #
-# An `[expect]` table in the file makes it a test of its own: `pytest my-scenes/`. From Python:
+# An `[expect]` table makes a scene file a test, run by `pytest my-scenes/`. From Python:
 
 # %%
 distance = jw.misfit(result, jw.simulate(scene, "lattice"))
@@ -113,7 +113,7 @@ print(f"rigid blocks from their exact motion: {distance:.1e}")
 assert distance < 0.005
 
 # %% [markdown]
-# Both, and the continuum beside them:
+# Both, with the continuum:
 
 # %%
 result.jw.plot(jw.simulate(scene, "lattice"), jw.simulate(scene, "continuum-jointed"))

@@ -1,4 +1,4 @@
-"""The free pillar and a lattice in other codes and in ours: misfits, rates and ratios."""
+"""The free pillar and lattices in other codes and in jointwave: misfits, rates and ratios."""
 
 import argparse
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from jointwave.compare.scenes import find
 
 
 class Peer(NamedTuple):
-    """Another code: where it is, its runs, and the curves that are missing without it."""
+    """Another code: how to start it, its runs, and its curves (listed as missing without it)."""
 
     place: Callable[[], Place]
     jobs: Callable[[Scene, Place, Path], list[Job]]
@@ -44,7 +44,7 @@ PEERS = {
 
 
 def rows_of(jobs: list[Job], scene: Scene, rounds: int, root: Path) -> list[dict]:
-    """Run all in turns, each of ours next to the peers that it is held beside; return the rows."""
+    """Run all in turn, jointwave runs next to the peers compared with them; return the rows."""
     twins = [*dict.fromkeys(job.twin for job in jobs if job.twin), *ours.ALONE]
     own = {twin: ours.job(scene, twin, root) for twin in twins}
     every = [one for t, mine in own.items() for one in (mine, *(j for j in jobs if j.twin == t))]
@@ -58,7 +58,7 @@ def rows_of(jobs: list[Job], scene: Scene, rounds: int, root: Path) -> list[dict
 
 
 def main() -> None:
-    """Run the peers that are named, or all, and write and print the table."""
+    """Run the named peers, or all; write the table and print ratios."""
     parser = argparse.ArgumentParser(prog="python tools/peers", description=__doc__)
     parser.add_argument("peers", nargs="*", metavar="PEER", help=f"of {', '.join(PEERS)}; all")
     parser.add_argument("--rounds", type=int, default=5, help="turns of each run")
@@ -71,7 +71,7 @@ def main() -> None:
     measure.on_one_core()
     scene = cases.load_variant(find(ours.SCENE), "", ours.ALIKE)
     root = options.out.resolve()
-    about = measure.machine()  # its load before ours
+    about = measure.machine()  # with the load before these runs
     places = {name: PEERS[name].place() for name in options.peers or PEERS}
     there = {name: place for name, place in places.items() if not place.missing}
     jobs = [job for name, place in there.items() for job in PEERS[name].jobs(scene, place, root)]

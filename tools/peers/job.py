@@ -1,4 +1,4 @@
-"""One run of one code: what it solves, how it is started, and how its waveform is read."""
+"""One run of one code: its model, command, and reader of its waveform."""
 
 import json
 import os
@@ -12,14 +12,14 @@ import numpy as np
 
 
 class Reading(NamedTuple):
-    """What a run wrote: stress [samples] (Pa, compression positive) and seconds of stepping."""
+    """The output of a run: stress [samples], Pa, compression positive, and seconds of stepping."""
 
     stress: np.ndarray
     stepping: float
 
 
 class Twin(NamedTuple):
-    """What of ours is measured beside a run: a model at as many steps a sample and elements."""
+    """The jointwave run compared with a run: a model with equal steps per sample and elements."""
 
     model: str
     stride: int
@@ -28,11 +28,11 @@ class Twin(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A run whose input is written, in a folder of its own.
+    """A run with its input, in a separate folder.
 
-    curve : the code and its method, a line in the diagram. solves : what it takes the pillar for.
-    reference : the exact solution of that model. settings : of this point.
-    freedoms, steps : how many. twin : what of ours it is held beside, None for ours.
+    curve : the code and its method, a line in the diagram. solves : its model of the pillar.
+    reference : the exact solution of that model. settings : of this point. freedoms, steps : their
+    numbers. twin : the jointwave run compared with it, None for jointwave's own runs.
     """
 
     curve: str
@@ -49,19 +49,19 @@ class Job:
     environment: dict[str, str] = field(default_factory=dict)
 
 
-#: Every code gets one thread; the process is pinned to one core besides.
+#: Every code gets one thread; the process is also pinned to one core.
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
 
 
 def environment_of(job: Job) -> dict[str, str]:
-    """Return the environment that a job runs in."""
+    """Return the environment variables of a job."""
     return {**os.environ, **ONE_THREAD, **job.environment}
 
 
 def folder_of(root: Path, curve: str, **settings: object) -> Path:
-    """Make and return the folder of one point, empty: no older output is taken for a new one."""
+    """Create and return the folder of one point, emptied of old output."""
     text = "-".join(f"{key}-{value}" for key, value in settings.items())
     folder = root / curve.replace(" ", "-").replace(",", "") / text
     shutil.rmtree(folder, ignore_errors=True)
@@ -70,6 +70,6 @@ def folder_of(root: Path, curve: str, **settings: object) -> Path:
 
 
 def read_driven(folder: Path) -> Reading:
-    """Read what our drivers of other codes write: stress.txt and seconds.json."""
+    """Read the output of a driver of another code: stress.txt and seconds.json."""
     seconds = json.loads((folder / "seconds.json").read_text())
     return Reading(np.loadtxt(folder / "stress.txt"), seconds["stepping"])

@@ -1,7 +1,7 @@
 """The pillar in LAMMPS: points on harmonic bonds, and spheres of six freedoms on BPM bonds.
 
-Thompson et al., Comp. Phys. Comm. 271 (2022) 108171; the bonds of six freedoms are its package BPM
-(Wang, Acta Geotechnica 4, 2009). Both step by velocity Verlet, which begins with half a kick.
+Thompson et al., Comp. Phys. Comm. 271 (2022) 108171; bonds of six freedoms are its package BPM
+(Wang, Acta Geotechnica 4, 2009). Both use velocity Verlet, which starts with half a velocity step.
 """
 
 import re
@@ -20,7 +20,7 @@ UNBREAKABLE = 1e30  # N and N m
 
 
 class Style(NamedTuple):
-    """How LAMMPS is asked for one kind of body."""
+    """The LAMMPS settings of one kind of body."""
 
     curve: str
     solves: str
@@ -41,7 +41,7 @@ SPHERES = Style(
     *("bpm/sphere", "nve/bpm/sphere", "vel yes", "off", 6, "blocks in space"),
 )
 
-#: What every input begins with: bodies of a data file on bonds of one kind.
+#: The beginning of every input: bodies from a data file on bonds of one kind.
 BODIES = """\
 units          si
 atom_style     {atoms}
@@ -72,14 +72,14 @@ run            {rest}
 
 
 def jobs(scene: Scene, place: Place, root: Path) -> list[Job]:
-    """Return the runs of both kinds, inputs written."""
+    """Write the inputs of the runs of both kinds, and return the runs."""
     return [
         job(pillar(scene, s), style, place, root) for style in (POINTS, SPHERES) for s in STRIDES
     ]
 
 
 def job(p: Pillar, style: Style, place: Place, root: Path) -> Job:
-    """Write the input of one run and return it."""
+    """Write the input of one run, and return the run."""
     folder = folder_of(root, style.curve, stride=p.stride)
     (folder / "in.pillar").write_text(script(p, style))
     (folder / "bodies.data").write_text(data(p, style))
@@ -103,9 +103,9 @@ def job(p: Pillar, style: Style, place: Place, root: Path) -> Job:
 def script(p: Pillar, style: Style) -> str:
     """Return the input script.
 
-    The load is read as long as it acts; reading zeros would be work that nobody asks for. The
-    stress is that of the recorded bond by its length: BPM's own output of it is half the force.
-    LAMMPS leaves out the half of k/2 r^2.
+    The load is read only while it acts, to save work. The stress is computed from the length of the
+    recorded bond, since BPM outputs half the force. LAMMPS defines the bond energy as k r^2, so its
+    coefficient is half the stiffness.
     """
     pushed = len(p.load) - 1
     twist, bend = p.shear * p.side**2 / 6, p.normal * p.side**2 / 12
@@ -129,14 +129,14 @@ def script(p: Pillar, style: Style) -> str:
 
 
 def bpm_bonds(*stiffness: float) -> str:
-    """Return the style and coefficients of bonds that never break: normal and shear stiffness, N/m,
-    and those of twist and bending, N m."""
+    """Return the style and coefficients of unbreakable bonds; stiffness : normal, shear, N/m,
+    twisting, bending, N m."""
     text = " ".join(map(repr, [*stiffness, *4 * [UNBREAKABLE], *4 * [0.0]]))
     return f"bond_style     bpm/rotational smooth no\nbond_coeff     1 {text}"
 
 
 def data(p: Pillar, style: Style) -> str:
-    """Return the data file: bodies at the blocks' centres along x, a bond at each joint."""
+    """Return the data file of bodies at the blocks' centres along x, with a bond at each joint."""
     n, d = p.blocks, p.spacing
     centres = (np.arange(n) + 0.5)[:, None] * [d, 0.0, 0.0]
     pairs = np.arange(n - 1)[:, None] + np.arange(2)
@@ -144,8 +144,8 @@ def data(p: Pillar, style: Style) -> str:
 
 
 def bodies(style: Style, mass: float, size: float, centres, pairs) -> str:
-    """Return the data file of bodies of one mass (kg) and diameter (m) at these centres [n, 3], m,
-    with bonds between pairs [bonds, 2], numbered from 0."""
+    """Return the data file of bodies of equal mass, kg, and diameter, m, at centres [n, 3], m, with
+    bonds between pairs [bonds, 2], numbered from 0."""
     box = np.stack([centres.min(axis=0) - size, centres.max(axis=0) + size], axis=1).tolist()
     sides = "".join(f"{a!r} {b!r} {x}lo {x}hi\n" for x, (a, b) in zip("xyz", box, strict=True))
     density = float(mass / (np.pi * size**3 / 6))
@@ -162,7 +162,7 @@ def bodies(style: Style, mass: float, size: float, centres, pairs) -> str:
 
 
 def read(folder: Path) -> Reading:
-    """Read the samples, and the loop times that LAMMPS reports."""
+    """Read the samples and the seconds of stepping."""
     seconds = stepping((folder / "output.txt").read_text())
     return Reading(np.loadtxt(folder / "stress.txt")[:, 1], seconds)
 

@@ -1,9 +1,9 @@
-"""Square and cubic lattices of bodies on BPM bonds in LAMMPS beside rigid blocks.
+"""Square and cubic lattices: bodies on BPM bonds in LAMMPS against rigid blocks.
 
-Both have as many bodies and bonds, of equal mass, inertia and stiffness (normal, shear, bending,
-torsion), begin with the same velocities and take the same steps on one core, in turns. After the
-last they must be at the same place: what is timed is the same motion. Joints that slip have no peer
-among bonds, and are timed beside the same ones.
+Both have equal numbers of bodies and bonds, mass, inertia and stiffness (normal, shear, bending,
+torsion), start with the same velocities and take the same steps on one core, in turn. Their final
+positions must agree, so that the same motion is timed. Joints with slip have no equivalent among
+bonds; their time is compared with that of the same bonds.
 """
 
 import subprocess
@@ -27,9 +27,10 @@ SCENES = {
 }
 SIDES = {2: (32, 100, 316), 3: (10, 22, 46)}  # bodies along each side
 COULOMB = {"friction_angle": 30.0, "cohesion": 1e5, "point_rule": "midpoint"}
-BODY_STEPS = 2_000_000  # of one run
-SPEED = 0.1  # m/s: turns of 1e-4, above the 1e-8 of an arc cosine near 1 that LAMMPS takes them by
-ALIKE = 1e-3  # of displacement: turns of 1e-4, which only LAMMPS takes as finite
+BODY_STEPS = 2_000_000  # of one run, about
+#: m/s. It gives rotations of 1e-4, well above the error 1e-8 of LAMMPS's arc cosine near 1.
+SPEED = 0.1
+ALIKE = 1e-3  # tolerance over displacement: only LAMMPS treats the rotations of 1e-4 as finite
 
 INPUT = """\
 run            {steps}
@@ -38,8 +39,8 @@ write_dump     all custom end.txt id x y z modify sort id format float %.17g
 
 
 class Lattice(NamedTuple):
-    """Blocks of 1 m in `dim` dimensions; pairs that touch [bonds, 2]; centres [bodies, dim];
-    velocities [bodies, freedoms], m/s and rad/s; steps."""
+    """Blocks of 1 m in `dim` dimensions; touching pairs [bonds, 2]; centres [bodies, dim], m;
+    velocities [bodies, freedoms], m/s and rad/s; number of steps."""
 
     dim: int
     model: Model
@@ -50,8 +51,8 @@ class Lattice(NamedTuple):
 
 
 def lattice(side: int, dim: int, law: dict) -> Lattice:
-    """Return the lattice with `side` blocks along each side, with the inertia of spheres of
-    diameter 1 m. law : keys of its joint sets."""
+    """Return the lattice of `side` blocks along each side, with the inertia of spheres of diameter
+    1 m. law : keys of its joint sets."""
     changes = {f"joint_sets.{k}.{key}": value for k in range(dim) for key, value in law.items()}
     changes["domain.size"] = [float(side)] * dim
     system = prepared(cases.load_variant(SCENES[dim], "", changes))
@@ -66,12 +67,12 @@ def lattice(side: int, dim: int, law: dict) -> Lattice:
 
 
 def in_space(values: np.ndarray) -> np.ndarray:
-    """Return vectors [n, dim] as LAMMPS takes them [n, 3]."""
+    """Return vectors [n, dim] padded with zeros to [n, 3]."""
     return np.pad(values, ((0, 0), (0, 3 - values.shape[1])))
 
 
 def ours(own: Lattice) -> tuple[np.ndarray, float]:
-    """Return displacements [bodies, dim] (m) and seconds of stepping."""
+    """Return displacements [bodies, dim], m, and seconds of stepping of jointwave."""
     state, samples = state_at_rest(own.model), samples_for(own.model, 0)
     state.v[:] = own.velocity
     began = perf_counter()
@@ -80,7 +81,7 @@ def ours(own: Lattice) -> tuple[np.ndarray, float]:
 
 
 def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]:
-    """Return the same from LAMMPS, whose own loop time is taken."""
+    """Return displacements [bodies, dim], m, and seconds of stepping (loop time) of LAMMPS."""
     law = law_of(own.model.laws, 0)  # of faces of 1 m2
     normal, shear = float(law.normal_stiffness), float(law.shear_stiffness)
     bonds = bpm_bonds(normal, shear, shear / 6, normal / 12)
@@ -109,7 +110,7 @@ def theirs(own: Lattice, place: Place, folder: Path) -> tuple[np.ndarray, float]
 
 
 def distance(found: np.ndarray, expected: np.ndarray) -> float:
-    """Return how far apart both end, of the displacement; exit where that is not alike."""
+    """Return the difference of final displacements over their size; exit if they do not agree."""
     apart = float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
     if not apart < ALIKE:
         raise SystemExit(f"{len(found)} bodies end {apart:.1e} apart: not the same motion")
@@ -117,7 +118,7 @@ def distance(found: np.ndarray, expected: np.ndarray) -> float:
 
 
 def compare(place: Place, rounds: int, root: Path) -> None:
-    """Print the ratio of the rates of both for each size, and how far apart they end."""
+    """Print the ratio of both rates for each size, and the difference of final displacements."""
     for dim, sides in SIDES.items():
         shape = {2: "square", 3: "cubic"}[dim]
         print(f"{shape} lattice: rigid blocks over LAMMPS BPM bonds, body-steps/s", flush=True)

@@ -1,4 +1,4 @@
-"""Whole processes, timed in turns: misfits, stepping rates, and ratios to ours by round."""
+"""Timing of whole processes in turn: misfits, stepping rates, and time ratios by round."""
 
 import json
 import os
@@ -17,7 +17,7 @@ from jointwave.compare.runs.timings import processor
 
 FINEST = "jointed-bar"  # intact rock with every joint resolved
 LONGEST = 600  # s
-#: What of a job is in its row, and all columns of the table.
+#: Columns taken from a job, and all columns of the table.
 ABOUT = ("curve", "solves", "settings", "reference", "freedoms", "steps")
 COLUMNS = (
     *(*ABOUT, "state", "message", "misfit", "total_misfit", "seconds", "whole", "rate", "beside"),
@@ -27,7 +27,7 @@ COLUMNS = (
 
 
 class Turn(NamedTuple):
-    """One run: its waveform, seconds of stepping and of the whole process; or why it failed."""
+    """One run: its waveform, seconds of stepping and of the whole process, or its failure."""
 
     stress: np.ndarray
     stepping: float = np.nan
@@ -36,7 +36,7 @@ class Turn(NamedTuple):
 
 
 def on_one_core() -> None:
-    """Pin this process, and so all that it starts, to one core, where the system can."""
+    """Pin this process and its children to one core, if the system supports it."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
@@ -79,9 +79,9 @@ def _read(job: Job, whole: float) -> Turn:
 
 
 def take_turns(jobs: list[Job], rounds: int) -> list[list[Turn]]:
-    """Run all once, untimed, then all of them in every round; return the turns of each job.
+    """Run all jobs once, untimed, then all in every round; return the turns of each job.
 
-    The first run compiles what is compiled and fills caches. What fails there is not run again.
+    The first run compiles and fills caches. A job that fails then is not run again.
     """
     first = [run(job) for job in jobs]
     turns: list[list[Turn]] = [[turn] if turn.failure else [] for turn in first]
@@ -111,7 +111,8 @@ def row(job: Job, turns: list[Turn], exact: dict[str, np.ndarray]) -> dict:
 
 
 def ratios(peer: list[Turn], ours: list[Turn]) -> dict:
-    """Return the peer's seconds over ours, round by round: median, least and most of both kinds."""
+    """Return the peer's seconds over ours by round, for stepping and whole processes: median, least
+    and most."""
     if any(turn.failure for turn in (*peer, *ours)):
         return {}
     found = {}
@@ -124,12 +125,12 @@ def ratios(peer: list[Turn], ours: list[Turn]) -> dict:
 
 
 def missing_row(curve: str, solves: str, reason: str) -> dict:
-    """Return the row of a peer that cannot be had."""
+    """Return the row of a peer that cannot be started."""
     return {"curve": curve, "solves": solves, "state": "missing", "message": reason}
 
 
 def frame(rows: list[dict]) -> pd.DataFrame:
-    """Return the rows as a table; a value that a row does not have stays empty."""
+    """Return the rows as a table; missing values are empty."""
     cells = [
         {k: json.dumps(v) if isinstance(v, list | dict) else v for k, v in row.items()}
         for row in rows
@@ -138,6 +139,6 @@ def frame(rows: list[dict]) -> pd.DataFrame:
 
 
 def machine() -> str:
-    """Return what the seconds were taken on."""
+    """Return the processor, cores, load and system of this machine as text."""
     load = f", load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
     return f"{processor()}, {os.cpu_count()} cores, one used{load}, {platform.platform()}"

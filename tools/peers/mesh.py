@@ -12,10 +12,10 @@ CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1,
 
 
 class Mesh(NamedTuple):
-    """Nodes [n, 3] (m) with the axis along x, and elements [m, corners], numbered from 0.
+    """Nodes [n, 3], m, with the axis along x, and elements [m, corners], numbered from 0.
 
-    kind : of the element, as meshio names it. loaded, share : nodes of the start face, and the area
-    that each stands for (m2; 1 for a bar, whose section gmsh does not know).
+    kind : of the element, meshio's name. loaded, share : nodes of the start face, and their areas,
+    m2 (1 for a bar, whose section gmsh does not know).
     """
 
     kind: str
@@ -26,7 +26,7 @@ class Mesh(NamedTuple):
 
 
 def bar(length: float, count: int) -> Mesh:
-    """Return a bar of so many segments."""
+    """Return a bar of `count` segments."""
     nodes = np.zeros((count + 1, 3))
     nodes[:, 0] = length / count * np.arange(count + 1)
     elements = np.arange(count)[:, None] + np.arange(2)

@@ -1,4 +1,4 @@
-"""The same pillar in this project, as its user runs it: `jointwave run` in a process of its own."""
+"""The same pillar in jointwave, run as a user does: `jointwave run` in a separate process."""
 
 import json
 import sys
@@ -18,17 +18,17 @@ from jointwave.compare.runs.output import write
 from jointwave.compare.scenes import find
 from jointwave.results.dataset import scene_hash
 
-#: A blow so close to the axis that it turns nothing, yet calls for all six freedoms.
+#: A blow so close to the axis that blocks do not rotate, but all six freedoms are computed.
 IN_SPACE = {"load.at": [1e-12, 0.0]}
 SCENE = "guo-li-2002/fig-03"
-ALIKE = {"record.energy": False}  # no peer keeps a ledger
-#: No formula is exact for the square column: ours at order 4, which is within 1 % of order 3.
+ALIKE = {"record.energy": False}  # no peer computes an energy ledger
+#: There is no exact solution of the square column: jointwave at order 4, within 1 % of order 3.
 COLUMN = "continuum-equivalent in space, order 4"
 IN_COLUMN = "continuum: the homogenised column in space, 3 freedoms a node"
 
 
 class Kind(NamedTuple):
-    """One model of ours: its curve, what it solves, engine, exact solution, and what it changes."""
+    """A model of jointwave: its curve, words, engine, exact solution, and changes of the scene."""
 
     curve: str
     solves: str
@@ -66,7 +66,7 @@ KINDS = {
     ),
 }
 
-#: What no peer runs: higher order, and the jointed rock itself.
+#: Runs without a peer: higher order, and jointed rock.
 ALONE = (
     Twin("homogenised column, order 2", 2, 1),
     Twin("jointed bar", 4, 1),
@@ -75,7 +75,7 @@ ALONE = (
 
 
 def job(scene: Scene, twin: Twin, root: Path) -> Job:
-    """Return the run of one of our models at the twin's step."""
+    """Return the run of a jointwave model with the twin's step."""
     kind, p = KINDS[twin.model], pillar(scene, twin.stride)
     elements = {"elements_per_block": twin.elements} if twin.elements else {}
     settings = {**elements, "stride": twin.stride}
@@ -125,7 +125,7 @@ def _critical(model: str, elements: int) -> tuple[float, int]:
 
 
 def references(scene: Scene, root: Path) -> dict[str, np.ndarray]:
-    """Return the waveforms that all are held against, by name; that of the column is kept."""
+    """Return the reference waveforms by name; that of the column is saved for later runs."""
     names = {kind.reference for kind in KINDS.values()} - {COLUMN}
     found = {name: solve(name, scene)["stress"].values[0] for name in sorted(names)}
     return found | {COLUMN: _column(root / f"column-{scene_hash(scene)}.txt")}

@@ -1,4 +1,4 @@
-"""The pillar that every code is given: the numbers, clock and load of one scene."""
+"""The pillar that every code solves: numbers, time steps and load of one scene."""
 
 from math import ceil, sqrt
 from typing import NamedTuple
@@ -13,13 +13,13 @@ from jointwave.cases.schema.scene import Scene
 
 
 class Pillar(NamedTuple):
-    """A uniform free pillar in plain numbers, with the step that all codes take.
+    """A uniform free pillar in plain numbers, with the time step of all codes.
 
     blocks, spacing, side, area : number, m, m, m2. mass : of a block, kg.
-    density, modulus, poisson : of the rock mass, kg/m3, Pa.
-    normal, shear : stiffness of a joint, N/m. joint : the recorded one, from 1 at the start.
-    dt, stride, steps : s, steps a sample, steps in all.
-    load : mean end stress over each step [n], Pa, zero after; see `cases.loads.step_means`.
+    density, modulus, poisson : of the rock mass, kg/m3, Pa, 1.
+    normal, shear : stiffness of a joint, N/m. joint : number of the recorded one, from 1.
+    dt, stride, steps : s, steps per sample, total number of steps.
+    load : mean end stress over each step [n], Pa, then zero; see `cases.loads.step_means`.
     """
 
     blocks: int
@@ -40,7 +40,7 @@ class Pillar(NamedTuple):
 
     @property
     def verlet_load(self) -> np.ndarray:
-        """The load for codes that begin with half a kick: that of step 0 counts twice."""
+        """The load for codes that start with half a velocity step: step 0 counts twice."""
         return np.append(2 * self.load[0], self.load[1:])
 
     @property
@@ -50,9 +50,9 @@ class Pillar(NamedTuple):
 
 
 def pillar(scene: Scene, stride: int) -> Pillar:
-    """Return the scene's pillar at so many steps a sample.
+    """Return the scene's pillar with `stride` steps per sample.
 
-    Raises SceneError where the scene does not record one stress, at a joint.
+    Raises SceneError unless the scene records one stress, at a joint.
     """
     p, dt = calibrate(scene), scene.interval / stride
     steps = stride * (len(sample_times(scene)) - 1)
@@ -81,10 +81,10 @@ def pillar(scene: Scene, stride: int) -> Pillar:
 
 
 def stride_for(scene: Scene, size: float, dim: int, fraction: float) -> int:
-    """Return the steps a sample that elements of this size (m) need.
+    """Return the steps per sample for elements of a size, m.
 
-    The step is at most `fraction` of the time a wave takes through an element: the bar's wave, or
-    the P wave of the column.
+    The step is at most `fraction` of the time in which a wave (in the bar the bar wave, in the
+    column the P wave) crosses an element.
     """
     p = calibrate(scene)
     nu = p.poisson if dim == 3 else 0.0

@@ -1,4 +1,4 @@
-"""The pillar in Akantu: what the peers' own Python runs on a generated mesh and material.
+"""The pillar in Akantu, run by the Python of the peers' environment.
 
 usage: python run_akantu.py FOLDER (reads pillar.json, pillar.msh and material.dat there, writes
 stress.txt, compression positive, and seconds.json)
@@ -14,9 +14,9 @@ import numpy as np
 
 
 def model_of(pillar: dict, mesh) -> "aka.SolidMechanicsModel":
-    """Return the model with lumped mass and central differences, at rest but for the first push.
+    """Return the model with lumped mass and central differences, at rest.
 
-    The first half kick: the acceleration that the load of step 0 gives the loaded nodes.
+    The loaded nodes have the acceleration by the load of step 0, for the first half velocity step.
     """
     model = aka.SolidMechanicsModel(mesh)
     model.initFull(_analysis_method=aka._explicit_lumped_mass)
