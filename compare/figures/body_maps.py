@@ -1,4 +1,4 @@
-"""Maps of a quantity over a body in side view, from the snapshots of results."""
+"""Maps of a quantity over a body, from the snapshots of results."""
 
 import json
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ CLOSE = 1e-6  # of the body's size: offset from a joint, and tolerance between s
 
 
 class Map(NamedTuple):
-    """A map of a quantity over a body in side view; coordinates (right, up), m.
+    """A map of a quantity over a body, in coordinates (right, up) of the picture, m.
 
     corners : of the faces [faces, corners, 2]. joints : ends of pieces of joints [pieces, 2, 2].
     values : of the faces or, for slip, of the pieces of joints, in the unit of the quantity.
@@ -132,7 +132,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
 
 
 def _joints(scene: AnyScene) -> np.ndarray:
-    """Return the joints of a scene in side view, cut into pieces [n, 2, 2], m."""
+    """Return the joints of a scene, cut into pieces [n, 2, 2], in coordinates of the picture, m."""
     blocks, turn = seen(scene)
     ends = blocks.contacts.ends[blocks.contacts.joint_set >= 0][..., turn]
     longest = float(np.ptp(blocks.outlines.corners, axis=0).max()) / PIECES

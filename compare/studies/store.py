@@ -81,7 +81,7 @@ def _parallel(
 
 @contextmanager
 def _ignoring_interrupts() -> Iterator[None]:
-    """Start workers that ignore Ctrl-C: this process receives it and ends them."""
+    """Let workers that start meanwhile ignore Ctrl-C: this process receives it and ends them."""
     if current_thread() is not main_thread():  # only the main thread can set signal handlers
         yield
         return
