@@ -18,6 +18,7 @@ from jointwave.dem.bounds import highest_energy, moved_apart, refuse_large_rotat
 from jointwave.dem.kernel.leapfrog import make_stepper
 from jointwave.dem.kernel.model import Samples, State, first_of, samples_for, state_at_rest
 from jointwave.dem.kernel.parts import thread_count
+from jointwave.dem.kernel.rotation import columns_less_one
 from jointwave.dem.prepare import blocks_of, clock_of, prepared
 from jointwave.dem.readings.snapshots import recorder
 from jointwave.dem.relaxation import start
@@ -34,6 +35,7 @@ BLOCK_STEPS_AT_ONCE = 20_000_000  # in some 10 ms to 1 s: often enough for a pro
 LOOKS = 20  # checks of a run, at least: blocks may move too far
 LEAST_STEPS = 64  # at a time: each thread copies its blocks before and after
 MOST_OF_DRIVE = 2_000_000  # force components on held blocks in memory at a time
+TURNED_FOR = 64  # steps at most, a few vibrations of a block, that the arm of a load stands still
 
 
 def simulate(
@@ -125,6 +127,9 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
     width = stages * loads.onto.shape[1] * len(loads.rows)
     size = min(max(1, MOST_OF_DRIVE // max(1, width)), time.stride * time.samples)
     drive, shake, shaking = None, None, system.shaking
+    turns = model.held is not None and model.form.finite and system.blocks.scene.load.arm is None
+    if turns:  # a divisor of the stride: runs in other chunks are the same bit by bit
+        size = max(n for n in range(1, TURNED_FOR + 1) if time.stride % n == 0)
     if model.held is not None:
         drive = np.zeros((stages * size, len(loads.rows), model.form.freedoms))
     if shaking is not None:
@@ -136,6 +141,9 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
             steps = np.arange(begin, min(begin + size, last))
             if drive is not None:
                 drive[: stages * len(steps)] = loads.drive(steps)
+            if drive is not None and turns:
+                q = state.turn[loads.rows], *state.u[loads.rows, 3:].T
+                drive[: len(steps), :, 3:] += loads.turned(steps, np.array(columns_less_one(q)).T)
             if shake is not None and shaking is not None:
                 shake[: len(steps)] = shaking(steps)
             take(time.stride, begin, begin + len(steps))

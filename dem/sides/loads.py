@@ -77,6 +77,14 @@ class Loads:
         [n stages, h, F], N and N m."""
         return self._on_blocks(instants(steps) if self.composed else steps)
 
+    def turned(self, steps: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        """Return what moments gain as the arms of loads that do not act all the time turn with
+        blocks by R - 1, [h, 3, 3]: [n, h, 3], N m."""
+        steady = self.shapes[[one is None for one in self.histories]].sum(axis=0)
+        found = (self.resultants(steps, np.arange(len(self.rows))) - steady)[..., 3:]
+        moved = turn @ found.reshape(*found.shape[:2], 3, 3)
+        return moved.reshape(found.shape) @ self.onto[3:, 3:].T
+
     def _on_blocks(self, steps: np.ndarray) -> np.ndarray:
         return self._acting(steps, np.arange(len(self.rows)), self.onto)
 
