@@ -69,8 +69,7 @@ def solver(name: str) -> Solver:
 
 
 def label_of(name: str) -> str:
-    """Return the label of an engine or exact solution, such as "rigid blocks, exact"; other names
-    unchanged."""
+    """Return the label of a solver, such as "rigid blocks, exact"; other names unchanged."""
     return solver(name).label if name in names() else name
 
 
@@ -120,10 +119,9 @@ def solve(
 ) -> xr.Dataset:
     """Return the result of one engine or exact solution.
 
-    comm : mpi4py's communicator of the processes that share a run of the continuum; None: one
-    process. keeper : saves checkpoints of an engine's run; None: no checkpoints.
-    Raises SceneError if the solver is unknown or does not apply, UnstableError if a run becomes
-    unstable.
+    comm : mpi4py's communicator of processes that share a run of the continuum, or None. keeper :
+    saves checkpoints of an engine's run, or None. Raises SceneError if the solver is unknown or
+    does not apply, UnstableError if a run becomes unstable.
     """
     one = solver(name)
     answer = applies(name, scene)

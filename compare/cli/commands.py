@@ -44,9 +44,8 @@ class List(SimpleNamespace):
 class Explain(options.SceneOptions):
     """Print the contents of a scene, its time steps, and the solvers that apply.
 
-    These are its rock and blocks, incoming waves, active effects, the time step of each engine and
-    what limits it, the solutions that apply with the options that select them, and the reference of
-    each engine. Nothing is run.
+    These are its rock and blocks, incoming waves, active effects, each engine's time step and what
+    limits it, the solutions that apply with their options, and the references. Nothing is run.
     """
 
     every: bool = typer.Option(
@@ -99,9 +98,8 @@ class Run(options.PrintOptions, options.SweepOptions):
     well, as a .pvd file for ParaView. Under mpiexec the processes share each run of the
     continuum; the first process does everything else.
 
-    Stored results are read, not computed again; --fresh computes them again. With --resume a killed
-    run continues from its last checkpoint, with a bit-identical result. Ctrl-C saves the partial
-    result.
+    Stored results are read; --fresh computes them again. With --resume a killed run continues from
+    its last checkpoint, with a bit-identical result. Ctrl-C saves the partial result.
 
     --sweep runs the scene for every value of a key, each in DIR/KEY=VALUE/, in several
     processes. Finished points are not run again; failed ones are listed. --ensemble runs a
@@ -307,8 +305,7 @@ class Fit(options.PrintOptions, options.SceneOptions):
     clock is a shift of the times of the files in s, and starts from cross-correlation. --with is
     that of compare: quantity, place, sign and unit of every column. Amplitudes are never scaled.
 
-    Without --engine the scene is solved by rigid blocks, in a short chain by their exact solution
-    (lattice).
+    Without --engine the solver is rigid blocks, in a short chain their exact solution (lattice).
 
     --out writes fit.csv: values, intervals and correlations. The last line printed is a command
     that compares the fitted scene with the same files.

@@ -1,5 +1,4 @@
-"""`jointwave compare`, which prints verdicts and misfits, and `jointwave report`, which writes them
-as a page."""
+"""`jointwave compare`: verdicts and misfits; `jointwave report`: the same as a page."""
 
 import json
 from functools import partial

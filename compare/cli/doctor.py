@@ -1,5 +1,4 @@
-"""`jointwave doctor`: which parts are installed, how to install missing ones, and a check of both
-engines on this machine.
+"""`jointwave doctor`: what is installed, how to install the rest, and a check of both engines.
 
 Each library is imported in a separate process, so that a crash becomes a line of the table.
 """

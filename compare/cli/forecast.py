@@ -35,9 +35,8 @@ def show_forecasts(
 ) -> None:
     """Print the estimated cost of each run, and of the whole command.
 
-    failing : points of a sweep known to fail, with the reason; more are found here. parts : numbers
-    of the command's other tasks, see `timings.OTHERWISE`. Raises SceneError for an impossible run
-    that is no point of a sweep.
+    failing : points of a sweep known to fail, with reasons; more are found here. parts : numbers of
+    other tasks, see `timings.OTHERWISE`. Raises SceneError for an impossible run without a point.
     """
     begun = process_time()  # starting the command takes as long as starting this one
     with progress(f"{len(wanted)} runs") as advance:

@@ -52,8 +52,7 @@ def stored_in(asked: StoredOptions, out: Path | None = None) -> ResultFolder:
 
 
 def results_of(scene: str = "", given: Path | None = None) -> Path:
-    """Return the folder of a scene's results: the given one, else the default; without a scene the
-    default folder of all scenes."""
+    """Return the folder of a scene's results, given or default, or of all scenes' results."""
     return given or RESULTS / Path(scene).stem
 
 

@@ -165,8 +165,7 @@ def view(asked: View) -> None:
 
 
 def _simulated(asked: Animate | View, scene: AnyScene, frames: int | None = None) -> Frame | None:
-    """Return the frame of a scene solved by both engines; with `--dry-run` print the estimated cost
-    and return None.
+    """Return the frame of a scene by both engines; with `--dry-run` print the cost, return None.
 
     frames : number of frames; None: one per recorded snapshot, or FRAMES if none are recorded.
     """

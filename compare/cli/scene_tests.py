@@ -33,8 +33,7 @@ class SceneFile(pytest.File):
         self.results.clear()
 
     def collect(self) -> Iterator["PairItem"]:
-        """Yield the tests; a file that is no scene, and each key that applies to no variant, yields
-        a failing test."""
+        """Yield the tests; failing ones for a file that is no scene and keys that never apply."""
         self.results: dict[tuple[str, str], Any] = {}
         try:
             scenes = load_variants(self.path)

@@ -98,9 +98,8 @@ def say_warnings(lines: Iterable[str]) -> None:
 def show_table(columns: list[str], rows: list[list[str]]) -> None:
     """Print a table of text.
 
-    A table wider than the terminal with few rows is transposed. Long cells are folded to the
-    terminal's width. Short ones are not: a narrow terminal then wraps whole lines, which can still
-    be read and copied.
+    A table wider than the terminal with few rows is transposed. Long cells are folded; short ones
+    are not: a narrow terminal then wraps whole lines, which can still be read and copied.
     """
     widths = (max(map(len, column)) + 2 for column in zip(columns, *rows, strict=True))
     if len(rows) <= TURNED and sum(widths) - 2 > _console().width:

@@ -19,8 +19,7 @@ FAINT = 1e-6  # of the largest waveform of its quantity; smaller waveforms are r
 def draw(results: dict[str, xr.Dataset]) -> Figure | None:
     """Return the bands of at most MOST waveforms that exceed round-off; None if there are none.
 
-    results : mean and percentiles of every waveform by name of the solver, with `statistic` as the
-    first dimension.
+    results : mean and percentiles of every waveform by solver, `statistic` as first dimension.
     """
     every: dict[Place, dict[str, list[np.ndarray]]] = {}
     for name in in_order(results):

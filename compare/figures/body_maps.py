@@ -31,10 +31,9 @@ CLOSE = 1e-6  # of the body's size: offset from a joint, and tolerance between s
 class Map(NamedTuple):
     """A map of a quantity over a body, in coordinates (right, up) of the picture, m.
 
-    corners : of the faces [faces, corners, 2]. joints : ends of pieces of joints [pieces, 2, 2].
-    values : of the faces or, for slip, of the pieces of joints, in the unit of the quantity.
-    time : of the snapshot, s; None for the peak over all. axes : their names. stretch : factor of
-    the upward coordinate.
+    corners : of faces [faces, corners, 2]. joints : pieces of joints [pieces, 2, 2]. values : of
+    the faces or, for slip, of the pieces, in the unit of the quantity. time : of the snapshot, s;
+    None for the peak over all. axes : their names. stretch : factor of the upward coordinate.
     """
 
     corners: np.ndarray

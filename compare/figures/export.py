@@ -1,5 +1,4 @@
-"""Empty figures, charts of axes with a common abscissa, and the files of a figure: drawings in SVG,
-PDF and PNG, numbers in CSV."""
+"""Empty figures, charts with a common abscissa, and the files of a figure: SVG, PDF, PNG, CSV."""
 
 import io
 from collections.abc import Iterator

@@ -1,5 +1,4 @@
-"""Panels with the waveforms of all solutions at the receivers of a scene's variants, and the
-variants' names."""
+"""Panels with the waveforms of all solutions at each receiver of each variant."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
@@ -167,8 +166,7 @@ def peaks(
     """Return the largest magnitude, SI, by quantity and component, of the first group of quantities
     that moves; if none moves, of the last recorded group.
 
-    results : a quantity is read from the first result that has it. least : smaller values count as
-    no motion.
+    results : the first that has a quantity counts. least : smaller values count as no motion.
     """
     found: dict[tuple[str, str], float] = {}
     for group in groups:

@@ -27,8 +27,7 @@ def figures_of(
 ) -> list[SceneFigure]:
     """Return the figures of a scene's variants.
 
-    name : prefix of file names ("fig-03"). fields : of `along_pillar` for each variant; empty: no
-    space-time diagrams.
+    name : prefix of file names ("fig-03"). fields : of `along_pillar` by variant, or empty.
     """
     along = [
         figure

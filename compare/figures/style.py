@@ -100,7 +100,6 @@ def in_unit(value: float, si: str) -> str:
 
 
 def unit_for(si: str, largest: float) -> Unit:
-    """Return the multiple of a unit that brings `largest` between 1 and 1000, or the unit itself
-    if there is none."""
+    """Return the multiple of a unit that brings `largest` between 1 and 1000, else the unit."""
     units = (Unit(prefix + si, size) for prefix, size in MULTIPLES.items())
     return next((one for one in units if 1 <= largest / one.size < 1000), Unit(si, 1.0))

@@ -1,8 +1,7 @@
 """Tables of a scene's variants, and their files: misfits, readings of velocities, alignment of
 curves, runs, and why solutions do not apply.
 
-Frames hold SI numbers, one fact per column. Tables are for display: the index holds the labels of
-rows, and misfits are in percent.
+Frames hold SI numbers, one fact per column; tables are for display, with misfits in percent.
 """
 
 from collections.abc import Iterator
@@ -72,8 +71,7 @@ def distance_frame(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def misfit_table(comparisons: list[Comparison]) -> pd.DataFrame:
-    """Return the relative L2 misfits: a row per pair, a column per variant and receiver; transposed
-    if there are many columns.
+    """Return the relative L2 misfits by pair, variant and receiver; a wide table is transposed.
 
     Faint waveforms, and displacements (integrals of the velocities), are in `distance_table` only.
     """
@@ -108,8 +106,7 @@ def distance_table(comparisons: list[Comparison]) -> pd.DataFrame:
 
 
 def worst_misfits(comparisons: list[Comparison]) -> pd.Series:
-    """Return by kind and pair the misfit of the worst waveform of all variants, as `[expect]`
-    bounds it."""
+    """Return by kind and pair the misfit of the worst waveform, as `[expect]` bounds it."""
     found = distance_frame(comparisons)
     misfits = 100 * found[DISTANCES["misfit"]].where(~found["faint"].astype(bool), 0.0)
     return misfits.groupby([found["kind"], found["pair"]], sort=False).max().rename("misfit")

@@ -64,12 +64,11 @@ class SceneRequest(NamedTuple):
 class SolvedScene(NamedTuple):
     """A scene solved with all solvers that apply.
 
-    scene : the first variant solved by most engines. seconds : of stepping it, by engine; for an
-    engine that does not solve it, of another variant. lead : the picture at the head of its
-    section; None without receivers. tables, files : by name; some tables are also files. scores :
-    verdicts of its engines. worst : misfits by pair. versions : of the packages that solved it.
-    about : parts of the misfit of the paper's free pillar. read : seconds that each result took
-    that was read, not computed.
+    scene : the first variant solved by most engines. seconds : of stepping it, by engine; of
+    another variant if an engine does not solve it. lead : the picture at the head, None without
+    receivers. tables, files : by name; some tables are also files. scores : verdicts of its
+    engines. worst : misfits by pair. versions : of packages. about : parts of the misfit of the
+    paper's free pillar. read : computing times of the results that were read, s.
     """
 
     request: SceneRequest
@@ -206,8 +205,7 @@ def _sentence(engine: str, scenes: list[SolvedScene]) -> str:
 
 
 def _distance(engine: str, scenes: list[SolvedScene], of: str) -> str:
-    """Return the largest misfit from the references (named if they are few) as text; of : words for
-    the scenes."""
+    """Return the largest misfit from the references as text; of : words for the scenes."""
     scores = [one.scores[engine] for one in scenes]
     found = [x for one in scores if not isnan(x := one.total.judged)]
     if not found:

@@ -48,8 +48,7 @@ def plan(
 ) -> tuple[list[Job], list[SceneError]]:
     """Return the jobs, and errors that say why an engine does not solve a variant.
 
-    Raises SceneError before any run if there is no job, or if a result would overwrite a file that
-    is not a result.
+    Raises SceneError before any run if there is no job, or if a result would replace another file.
     """
     from jointwave.compare.runs.output import refuse_foreign
 

@@ -161,8 +161,7 @@ def write_dataset(path: Path, result: xr.Dataset) -> Path:
 
 
 def write_pvd(path: Path, s: Snapshots) -> Path:
-    """Write snapshots for ParaView: NAME.pvd at `path`, and NAME-fields/0000.vtu, ..., one per
-    instant, with meshio.
+    """Write snapshots for ParaView: NAME.pvd at `path`, and NAME-fields/0000.vtu, ... per instant.
 
     Points are those of the undeformed body; the filter "Warp By Vector" shows its motion. Point
     data: displacement (m), velocity (m/s). Cell data: block and, if known, stress (Pa).

@@ -1,7 +1,6 @@
 """The processes of one command: this one only, or all those started by mpiexec.
 
-All execute the same command. Work that is not shared is done by the first process only, which also
-prints.
+All execute the same command. Only the first process prints, and does work that is not shared.
 """
 
 import os
@@ -107,8 +106,7 @@ def _tried(work: Callable[[], T]) -> tuple[T | None, Exception | None]:
 
 
 def arrive(comm: Any, patience: float = inf) -> bool:
-    """Wait until all processes of a communicator of mpi4py arrive; return whether they do so within
-    `patience`, s.
+    """Wait until all processes arrive; return whether they do so within `patience`, s.
 
     For long waits while one process compiles, partitions or runs for all: MPI's own barrier spins
     and so takes a core from the working process.

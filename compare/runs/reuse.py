@@ -57,8 +57,7 @@ def unlike(path: Path, about: Signature) -> str:
 
 
 def read_result(path: Path, scene: AnyScene, about: Signature, told: set[str]) -> xr.Dataset | None:
-    """Return the result of this signature from a file; None if it cannot be used, with the reason
-    logged once.
+    """Return the result of this signature from a file, or None and log why, each reason once.
 
     scene : replaces the scene in the file, from which it may differ in keys that do not affect the
     result, such as `[expect]`. told : the reasons logged so far.

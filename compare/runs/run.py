@@ -83,8 +83,7 @@ def _saver(job: Job, settings: CheckpointSettings, processes: Processes) -> RunC
 
 
 def _run(job: Job, saver: RunCheckpointer, progress: Progress, processes: Processes) -> Done | None:
-    """Run a job, unless its result exists, and write its files; None except on the first
-    process."""
+    """Run a job unless its result exists, and write its files; the first process returns it."""
     result: Any = processes.by_first(saver.finished)
     if processes.told_by_first(lambda: result is None):
         work = partial(solve, job.name, job.scene, progress, processes.comm, saver)
@@ -116,8 +115,7 @@ def _write_stopped(job: Job, error: StoppedError) -> None:
 def _write(
     job: Job, saver: RunCheckpointer, result: xr.Dataset, seconds: float, part: float
 ) -> None:
-    """Write a result and save its cost, except of a continued run, of which only a part was
-    timed."""
+    """Write a result and save its cost, except of a continued run, which was timed in part."""
     write_dataset(job.path, signed(result, saver.signature, seconds))
     if saver.done:
         job.path.with_suffix(STOPPED).unlink(missing_ok=True)

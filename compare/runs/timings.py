@@ -80,8 +80,7 @@ def note(
 ) -> None:
     """Store the rate of a run, unless it takes snapshots, and its set-up time.
 
-    about : attributes of its result. seconds : total; None: unknown. part : fraction of all seconds
-    to count, see `timed`.
+    about : attributes of its result. seconds : total, or None. part : of seconds, see `timed`.
     """
     seconds = None if seconds is None else part * seconds
     if name not in ENGINES:
@@ -104,8 +103,7 @@ def setup(name: str, scene: AnyScene) -> float | None:
 
 
 def stepping(name: str, scene: AnyScene, run: Prepared) -> float | None:
-    """Return the expected seconds of stepping without snapshots; None if no run of this kind was
-    timed on this machine."""
+    """Return the expected seconds of stepping without snapshots; None if never timed."""
     if name not in ENGINES:
         rate = _known().get(_key(name, scene, {}))
         likely = None if rate is None else rate * waveform_bytes(scene)

@@ -35,8 +35,7 @@ def _labels(found: pd.DataFrame) -> pd.Series:
 
 
 def table(found: pd.DataFrame) -> pd.DataFrame:
-    """Return the effects, most expensive first, under a heading for each scene and engine with the
-    cost of its step."""
+    """Return the effects by scene and engine, most expensive first, with the cost of a step."""
     numbers = {label: i for i, label in enumerate(_labels(found).unique(), start=1)}
     rows: dict[tuple[str, str], dict[str, Any]] = {}
     for _, some in found.assign(label=_labels(found)).groupby(["label", "engine"], sort=False):

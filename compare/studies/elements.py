@@ -26,9 +26,8 @@ UNTIMED, UNTIMED_IMPLICIT = 1e-9, 5e-7
 EXPLICIT: dict[str, Any] = {"scheme": "explicit"}
 #: No numerical damping: only the accuracy of the waveforms counts here.
 IMPLICIT: dict[str, Any] = {"scheme": "implicit", "spectral_radius": 1.0}
-#: Least ratio of degrees of freedom that counts as refinement. Halving one element of order 2
-#: gives 5 / 3 along a block and 25 / 9 in a quadrilateral; blocks smaller than the elements gain
-#: none.
+#: Least ratio of degrees of freedom of a refinement. Halving one element of order 2 gives 5 / 3
+#: along a block, 25 / 9 in a quadrilateral, nothing in blocks smaller than the elements.
 GROWN = {"pillar": 1.5, "rock mass": 2.5}
 MOST_HALVINGS = 4  # in one refinement, until the degrees of freedom grow
 HALF = {"elements_per_block": 2, "size": 0.5, "block": 0.5}  # factors for half the size
@@ -104,8 +103,7 @@ def label(name: str, changes: dict[str, Any]) -> str:
 
 
 def elements(scene: AnyScene, name: str, changes: dict[str, Any]) -> Elements:
-    """Return an engine's elements for a scene with their longest step; raises SceneError if the
-    engine cannot run them."""
+    """Return elements with their longest step; raises SceneError if the engine cannot run them."""
     trial = configured(scene, name, changes)
     if not (answer := applies(name, trial)):
         raise SceneError(scene.where, "", None, answer.reason)

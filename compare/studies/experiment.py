@@ -25,11 +25,10 @@ class Summary(NamedTuple):
     """A study's summary for display.
 
     name : of its files, and of its section of the page. table : its numbers in display units; the
-    index levels are the heading of a group and the label of a row. sentences : its findings.
-    failed : a line for each failed row. data : its rows and other numbers, machine-readable, see
-    `facts`. note : a remark on the whole study. legend : of the table. about : for the caption of
-    the figure: its contents, the quantity of its misfits, or its scenes. timed : whether it has
-    seconds.
+    index levels are a heading and the label of a row. sentences : its findings. failed : a line for
+    each failed row. data : its rows and other numbers, machine-readable, see `facts`. note : a
+    remark on the study. legend : of the table. about : for the caption of the figure: its contents,
+    the quantity of its misfits, or its scenes. timed : whether it has seconds.
     """
 
     name: str
@@ -92,8 +91,7 @@ class Experiment:
     def measured(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
         """Return the rows of all points; saved points are not measured again.
 
-        pool : does the work; None: this process, one point after the other. Raises SceneError if a
-        saved file is damaged.
+        pool : does the work; None: this process. Raises SceneError if a saved file is damaged.
         """
         named = {self.key(point): point for point in self.points}
         found = {name: rows for name in named if (rows := self._saved(name)) is not None}

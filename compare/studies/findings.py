@@ -39,9 +39,8 @@ def judged(rows: Sequence[Row]) -> pd.DataFrame:
 
 
 def _held(table: pd.DataFrame, error: str) -> pd.Series:
-    """Return for each point the largest error among itself and all finer points of its curve with
-    the same physics; nan for a point without error. A finer point has more work or, if work is not
-    counted, a later row."""
+    """Return for each point the largest error among itself and finer points of its curve with the
+    same physics; nan without error. A finer point has more work or, if not counted, a later row."""
     free = ("pillar.block", "numerics.")  # these do not change the problem
     physics = table["settings"].map(
         lambda of: repr(sorted((k, v) for k, v in of.items() if not k.startswith(free)))

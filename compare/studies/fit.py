@@ -87,8 +87,7 @@ def fit(
     same, each relative to its size; amplitudes are not scaled. The 95 % intervals are linearised at
     the best fit, and valid if the model is correct and residuals are independent.
 
-    Raises SceneError for keys and curves that cannot be fitted, StoppedError if the search does not
-    converge.
+    Raises SceneError for keys and curves that cannot be fitted, StoppedError without convergence.
     """
     scene = load(scene)
     if not curves or not free:
@@ -196,8 +195,7 @@ class _Trials:
         return found if found.success else None
 
     def _all_residuals(self, unknowns: Parameters) -> np.ndarray:
-        """Return all residuals as one array; infinite if there is no solution, so that the search
-        takes a shorter step."""
+        """Return all residuals; infinite without a solution, so that the step gets shorter."""
         try:
             return np.concatenate(self.residuals(unknowns.valuesdict().values()))
         except (SceneError, UnstableError):

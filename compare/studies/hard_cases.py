@@ -90,8 +90,7 @@ def judged(rows: Sequence[Row]) -> pd.DataFrame:
 
 
 def hard_cases() -> list[Row]:
-    """Return all cases, not yet run: each variant of each scene of cases/hard, and runs with steps
-    above the critical one."""
+    """Return all cases, not run yet: variants of cases/hard, and runs above the critical step."""
     found = [
         (name, scene.name, engine.name, scheme)
         for name in shipped()
@@ -195,8 +194,7 @@ def measure(point: Row) -> Row:
 
 
 def runs(points: Sequence[Row]) -> list[Run]:
-    """Return the runs of cases and of their exact solutions, and those of the stable cells of maps;
-    unstable cells end early."""
+    """Return the runs of cases and of their exact solutions, and of the stable cells of maps."""
     found = [Run("maps", *hard_map.cells_to_run(one)) for one in points if "ratio" in one]
     for row in (one for one in points if "ratio" not in one):
         with suppress(SceneError):

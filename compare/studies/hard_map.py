@@ -2,8 +2,7 @@
 
 If every dashpot is eta times its spring, the mode of highest frequency omega, with damping ratio
 zeta = eta omega / 2, determines stability. The critical step of `numerics.critical_step`, over the
-undamped one, is x = omega dt / 2 = sqrt(1 + 4 zeta^2) - 2 zeta. A cell is stable if the divergence
-monitor does not stop its run.
+undamped one, is x = omega dt / 2 = sqrt(1 + 4 zeta^2) - 2 zeta. A cell is stable if its run ends.
 """
 
 from math import pi
@@ -72,8 +71,7 @@ def computed(column: Row) -> Row:
 
 
 def cells_to_run(column: Row) -> tuple[AnyScene, str, int]:
-    """Return the scene with the undamped critical step, the engine, and the number of cells that
-    theory calls stable."""
+    """Return the scene with the undamped critical step, the engine, the number of stable cells."""
     engine, critical = ENGINES[column["engine"]], _prepared(column["engine"], {})
     stable = sum(x < boundary(np.array(column["ratio"])) for x in column["steps"])
     return _scene(engine.engine, critical, 1.0, {}), engine.name, int(stable)
@@ -96,8 +94,7 @@ def _scene(table: str, dt: float, fraction: float, changes: dict[str, Any]) -> A
 def cells_of(found: list[Row]) -> pd.DataFrame:
     """Return the cells of computed columns.
 
-    wrong : whether a cell contradicts theory at its centre. far : whether it is wrong and more than
-    one cell away from the boundary.
+    wrong : whether a cell contradicts theory. far : wrong, and over one cell from the boundary.
     """
     cells = pd.DataFrame(found).explode(["steps", "stable"])
     cells = cells.rename(columns={"steps": "step"}).astype({"step": float, "stable": bool})

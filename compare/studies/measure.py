@@ -43,9 +43,8 @@ COUNTS = ("dt", "steps", "freedoms", "work", "bytes", "seconds", "spread", "setu
 class Reference(NamedTuple):
     """The reference of errors.
 
-    error : relative error of the reference itself: 0 for a closed form, the bound of a computed
-    solution, for a run the distance from a coarser one. settings : of a run, "" for an exact
-    solution.
+    error : of the reference itself, relative: 0 for a closed form, the bound of a computed
+    solution, for a run the distance from a coarser one. settings : of a run, else "".
     """
 
     name: str
@@ -130,8 +129,8 @@ def finest_of(study: Study) -> str | FineRun | None:
 
 def own_of(point: StudyPoint) -> str | FineRun | None:
     """Return the reference of a point's numerical error: the one set by its curve, else the exact
-    solution of its own model, else its method run with the settings of the study's fine run if both
-    use the same engine, else None."""
+    solution of its own model, else a run of its method as fine as the study's fine run, if that is
+    of the same engine, else None."""
     own, study, scene = point.curve.own, point.study, point.scene
     if own is not None:
         return finest_of(study) if own == FINEST else None if own == NONE else own

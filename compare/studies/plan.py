@@ -1,9 +1,8 @@
 """The cheapest way to solve a scene within a misfit: try runs in order of cost until one meets it.
 
 The criterion is the sum of the numerical error (run against its engine's own model) and the
-modelling error (that model against the finest physics), so errors that cancel do not count as
-accuracy. A run meets the misfit only if at least one run with smaller steps was made, and all such
-runs meet it too.
+modelling error (that model against the finest physics), so that errors cannot cancel. A run meets
+the misfit if at least one run with smaller steps was made, and all of these meet it too.
 """
 
 from collections.abc import Iterator
@@ -103,8 +102,7 @@ class Plan:
         return LONGEST[self.scene.kind] - sum(run.seconds for run in self.runs)
 
     def worst(self, run: PlannedRun) -> float:
-        """Return the largest sum of errors among a run and all runs of its elements with smaller
-        steps."""
+        """Return the largest sum of errors of a run and of its elements' smaller steps."""
         return max(one.misfit for one in [run, *self._finer(run)])
 
     def _is_met_by(self, run: PlannedRun) -> bool:
@@ -227,8 +225,7 @@ def _reference(
 def _runs(scene: AnyScene, name: str, model: dict[str, Any]) -> Iterator[Reference]:
     """Yield runs of a model, each with at most half the previous step and, in rock, finer elements.
 
-    The stated error is the distance from the previous run, an upper bound if errors fall at least
-    in proportion to the step.
+    The stated error, the distance from the previous run, is a bound if the order is at least one.
     """
     is_rigid, before = ENGINES[name].has_rigid_blocks, None
     one = elements(scene, name, model if is_rigid else choices.EXPLICIT | choices.rock(scene, 2))

@@ -167,8 +167,7 @@ def sentences(rows: pd.DataFrame) -> list[str]:
 def draw(name: str, rows: pd.DataFrame) -> Figure:
     """Return the diagram of a study: moduli over angle or number, P and SV waves side by side.
 
-    For incident kind k and wave w the closed form is the line NAME-exact-k-w, an SVG group; solver
-    j gives the points NAME-k-j-w.
+    SVG groups of incident kind k, wave w: the closed form NAME-exact-k-w, solver j NAME-k-j-w.
     """
     varied, heading = VARIED[name]
     with blank(3.6) as figure:

@@ -49,9 +49,9 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
 def shortened(
     scene: AnyScene, name: str = DEM.name, unit_steps: int = UNIT_STEPS, threads: int | None = None
 ) -> AnyScene:
-    """Return the beginning of a scene, at least one sample, without snapshots; an eighth if the
-    solver has no time steps. unit_steps : steps times blocks or freedoms, about. threads : of rigid
-    blocks; None: the scene's own."""
+    """Return the beginning of a scene, at least one sample, without snapshots; an eighth without
+    time steps. unit_steps : steps times blocks or freedoms, about. threads : None: as in the
+    scene."""
     run = solver(name).prepare(scene)
     steps = run.steps * solver(name).units(scene, run.freedoms)
     part = min(1.0, unit_steps / steps) if steps else 1 / 8

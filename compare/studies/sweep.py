@@ -143,8 +143,7 @@ def compare_scene(
     curves: list[Curves],
     align: bool,
 ) -> Rows:
-    """Compare a scene as `jointwave compare` does and save all results; return a row for each
-    misfit."""
+    """Compare a scene as `jointwave compare` does, store all results; return a row per misfit."""
     stored = ResultFolder(folder, fresh)
     found = comparison.compare(scene, curves, None, align, spectral, stored)
     if folder is not None:

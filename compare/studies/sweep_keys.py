@@ -104,8 +104,7 @@ def _folder(setting: dict[str, Any], number: int) -> str:
 
 
 def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
-    """Return the seeds of a scene's member `number` (from 1) by key; none if joints are not
-    random."""
+    """Return the seeds of a scene's member `number` (from 1) by key; none without random joints."""
     scatter = getattr(scene, "scatter", None)
     found = {} if scatter is None else {"scatter.seed": scatter.seed}
     for i, one in enumerate(getattr(scene, "joint_sets", [])):

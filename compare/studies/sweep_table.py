@@ -37,8 +37,7 @@ HEADINGS = {"time_of_peak": "time of peak (s)", "seconds": "stepping (s)", "dela
 def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame) -> Summary:
     """Return the summary of a sweep's table; write sweep.csv and, for an ensemble, its statistics.
 
-    scene : its name. keys : the swept keys. out : None writes nothing. Raises SceneError if all
-    cases have failed.
+    scene : its name. keys : the swept keys. out : folder, or None. Raises SceneError if all failed.
     """
     done, failed = rows[rows.state == "done"], rows[rows.state == "failed"]
     if done.empty:
@@ -99,8 +98,7 @@ def statistics(done: pd.DataFrame, keys: list[str], numbers: list[str]) -> pd.Da
     """Return mean and percentiles over the members of each number of the completed rows; of peaks
     the magnitude, since their sign differs between members.
 
-    One row per number: the swept keys, the columns OF_ROW, `number`, STATISTICS, and `members`, the
-    count of members with this number.
+    One row per number: swept keys, columns OF_ROW, `number`, STATISTICS, and count of `members`.
     """
     same = [key for key in (*keys, *OF_ROW) if key in done and key != MEMBER]
     sizes = {"peak": done["peak"].abs()} if "peak" in numbers else {}
@@ -117,8 +115,7 @@ def write_ensemble(
 ) -> list[Path]:
     """Write ensemble.csv, mean and percentiles of every waveform, and their figure.
 
-    numbers : from `statistics`. done : rows of the members, with the folder of their results.
-    keys : of the sweep.
+    numbers : from `statistics`. done : rows of the members, with folders. keys : of the sweep.
     """
     files = [write_csv(out / "ensemble.csv", numbers)]
     others = [key for key in keys if key != MEMBER]

@@ -56,8 +56,7 @@ WAVES = {"R_p": "reflected P", "R_s": "reflected S", "T_p": "transmitted P", "T_
 
 
 class ParallelJoints(NamedTuple):
-    """Parallel joints in the order in which a wave meets them, the spacings between them, m, and
-    the period of the wave, s."""
+    """Joints in the order in which a wave meets them, spacings between them, m, wave period, s."""
 
     rock: IntactRock
     joints: list[Joint]

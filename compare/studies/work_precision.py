@@ -1,7 +1,6 @@
 """The table, the diagram and the findings of a study: error over seconds and over counted work.
 
-A cross marks a point more accurate than its errors or finer points imply; it is excluded. Colours
-show the model.
+A cross marks a point more accurate than its errors or finer points imply: it is excluded.
 """
 
 import json
@@ -140,8 +139,7 @@ def _settings(settings: dict[str, Any]) -> str:
 def draw(name: str, table: pd.DataFrame, costs: dict[str, str]) -> Figure:
     """Return the diagram of a judged table: one row of axes per error, one column per cost.
 
-    costs : columns of the table with their axis labels. Curve k of row i, column j is the SVG group
-    NAME-i-j-k.
+    costs : columns and their axis labels. Curve k of row i, column j is the SVG group NAME-i-j-k.
     """
     errors = [error for error in ERRORS if any(len(done(table, error, cost)) for cost in costs)]
     count = table["curve"].nunique()

@@ -11,8 +11,7 @@ LANES, ROW = 64, 72
 
 @numba.njit(cache=True, error_model="numpy")
 def axial(u, v, rate, steps, dt, x, k, c, load):
-    """Step a row of blocks with springs and dashpots in one fused loop; load : on the first block,
-    N."""
+    """Step a row of blocks with springs and dashpots; load : on the first block, N."""
     tail = u.size - 1
     for _ in range(steps):
         push = load
@@ -29,8 +28,7 @@ def axial(u, v, rate, steps, dt, x, k, c, load):
 
 @numba.njit(cache=True, error_model="numpy")
 def spatial(motion, slides, forces, steps, dt, k_n, k_s, b, mu, c, h, x, xi, xj):
-    """Step a row of blocks with six freedoms and 2 x 2 contact points at +-b with Coulomb slip, in
-    tiles of 64 blocks.
+    """Step a row of blocks: six freedoms, 2 x 2 points at +-b with Coulomb slip, 64 blocks a tile.
 
     motion : [tiles, 12 rows of 72], slides : [tiles, 8 rows of 64], forces : [6 rows of 72].
     """

@@ -3,8 +3,7 @@
     python tools/bench/startup.py
 
 Two commands run in turn, so that drift of the machine's speed affects both; quote the median of the
-ratios. A first run compiles its kernels into an empty cache: its processor time over that of the
-second is the cost of compiling.
+ratios. The first run compiles kernels: its processor time over the second's is the cost.
 """
 
 import os

@@ -22,8 +22,7 @@ FILM = ("--frames", "25", "--seconds", "2.5")
 
 
 class Page(NamedTuple):
-    """A page: the name of its scene's file, the scene as shown and as stored, its code and
-    pictures."""
+    """A page: its scene's file name, the scene as shown and as stored, its code and pictures."""
 
     path: Path
     file: str

@@ -1,9 +1,8 @@
 """Hooks of mkdocs: generated parts of pages, and formulas as MathML.
 
 A line `<!-- generated: NAME -->` or `<!-- generated: NAME ARGUMENT -->` of a page is followed by
-the text of `GENERATED[NAME]`, up to a line `<!-- end -->` if the page contains that text.
-Run as a program, it writes the text into the pages of docs/reference. Browsers show MathML without
-scripts or network.
+the text of `GENERATED[NAME]`, up to a line `<!-- end -->` if the page contains that text. As a
+program it writes the text into docs/reference. MathML needs no script and no network.
 """
 
 import re

@@ -1,7 +1,6 @@
 """The pillar in Akantu: the homogenised rock mass as a bar, and as a column of hexahedra.
 
-Richart et al., JOSS 9 (2024) 5253. Linear elements, lumped mass, central differences. This module
-writes the input of `run_akantu`.
+Richart et al., JOSS 9 (2024) 5253. Linear elements, lumped mass, central differences.
 """
 
 import json

@@ -103,9 +103,8 @@ def job(p: Pillar, style: Style, place: Place, root: Path) -> Job:
 def script(p: Pillar, style: Style) -> str:
     """Return the input script.
 
-    The load is read only while it acts, to save work. The stress is computed from the length of the
-    recorded bond, since BPM outputs half the force. LAMMPS defines the bond energy as k r^2, so its
-    coefficient is half the stiffness.
+    The load is read only while it acts. The stress is computed from the length of the recorded
+    bond, since BPM outputs half the force. LAMMPS's bond energy is k r^2: k is half the stiffness.
     """
     pushed = len(p.load) - 1
     twist, bend = p.shear * p.side**2 / 6, p.normal * p.side**2 / 12
@@ -129,8 +128,7 @@ def script(p: Pillar, style: Style) -> str:
 
 
 def bpm_bonds(*stiffness: float) -> str:
-    """Return the style and coefficients of unbreakable bonds; stiffness : normal, shear, N/m,
-    twisting, bending, N m."""
+    """Return settings of unbreakable bonds; stiffness : normal, shear, N/m, twist, bending, N m."""
     text = " ".join(map(repr, [*stiffness, *4 * [UNBREAKABLE], *4 * [0.0]]))
     return f"bond_style     bpm/rotational smooth no\nbond_coeff     1 {text}"
 

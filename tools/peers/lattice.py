@@ -51,8 +51,7 @@ class Lattice(NamedTuple):
 
 
 def lattice(side: int, dim: int, law: dict) -> Lattice:
-    """Return the lattice of `side` blocks along each side, with the inertia of spheres of diameter
-    1 m. law : keys of its joint sets."""
+    """Return the lattice with the inertia of spheres of 1 m. law : keys of its joint sets."""
     changes = {f"joint_sets.{k}.{key}": value for k in range(dim) for key, value in law.items()}
     changes["domain.size"] = [float(side)] * dim
     system = prepared(cases.load_variant(SCENES[dim], "", changes))

@@ -111,8 +111,7 @@ def row(job: Job, turns: list[Turn], exact: dict[str, np.ndarray]) -> dict:
 
 
 def ratios(peer: list[Turn], ours: list[Turn]) -> dict:
-    """Return the peer's seconds over ours by round, for stepping and whole processes: median, least
-    and most."""
+    """Return the peer's seconds over ours by round, stepping and whole: median, least, most."""
     if any(turn.failure for turn in (*peer, *ours)):
         return {}
     found = {}

@@ -58,8 +58,7 @@ class Body(NamedTuple):
         )
 
     def profile(self) -> pd.DataFrame:
-        """Return the mean values of the faces nearest to the viewer: a row per instant, a column
-        per position along the axis."""
+        """Return the mean values of front faces, a row per instant, a column per axial position."""
         front = self.front()
         along, values = front.rest[front.faces, 0].mean(axis=1), pd.DataFrame(front.values.T)
         return values.groupby(along.round(9)).mean().T
@@ -90,8 +89,7 @@ def body_of(s: Snapshots, settings: snapshots.ViewSettings) -> Body:
 
 
 def _outside(s: Snapshots) -> tuple[np.ndarray, np.ndarray]:
-    """Return the faces that belong to one cell only, counter-clockwise from outside, and the
-    indices of their cells."""
+    """Return the outer faces, counter-clockwise from outside, and the indices of their cells."""
     rings = np.array(FACES[s.kind])
     faces = s.cells[:, rings].reshape(-1, rings.shape[1])
     cells = np.repeat(np.arange(len(s.cells)), len(rings))
@@ -129,8 +127,7 @@ def _solid(s: Snapshots, side: float) -> Snapshots:
 def colours_of(
     every: list[np.ndarray], sign: str, colours: str | None = None, sizes: Sequence[np.ndarray] = ()
 ) -> tuple[ScalarMappable, float]:
-    """Return the colour scale of some values, symmetric about zero if signed, and the fraction of
-    values beyond it.
+    """Return the colour scale of values, symmetric if signed, and the fraction of values beyond it.
 
     The scale ends at the largest value, or at a percentile if few values far exceed it; the colour
     bar then ends in an arrow. colours : name of a colour map; None: the default. sizes : weights of

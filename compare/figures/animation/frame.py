@@ -28,8 +28,7 @@ HEAD, STRIP = 0.7, 0.95  # heights of the header and of a pillar, inches
 
 
 class Frame:
-    """The frame of every instant: for a pillar the bodies, the wave along it and a waveform; for a
-    rock mass the bodies side by side.
+    """The frame of an instant: the bodies and, for a pillar, the wave along it and a waveform.
 
     scale, quantity : see `settings_for`.
     """

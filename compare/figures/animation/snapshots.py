@@ -90,8 +90,7 @@ def with_snapshots(scene: AnyScene, interval: float) -> AnyScene:
 
 
 class Quantity(NamedTuple):
-    """The quantity of the colours: name with unit, factor from SI, meaning of the sign ("" if
-    unsigned)."""
+    """The quantity of the colours: name with unit, factor from SI, meaning of the sign, if any."""
 
     name: str
     factor: float = 1.0
@@ -149,8 +148,7 @@ def settings_for(
     """Return the view settings for snapshots by engine.
 
     scale, quantity : of displacements and colours; None: chosen here. A pillar is turned so that
-    most of its transverse motion is upwards; a rock mass is seen in its plane or, in space, from
-    the south.
+    its transverse motion is mostly upwards; a rock mass in space is seen from the south.
     """
     up, stretch = Z if scene.in_space else Y, 1.0
     if scene.is_column:  # a thin one is drawn thicker

@@ -29,8 +29,7 @@ def write_video(
 ) -> Path:
     """Write images, uint8 arrays [height, width, 4], as MP4 or GIF by the path's suffix.
 
-    size : width and height, even. rate : images per second. Raises SceneError for more than
-    `MOST`.
+    size : width and height, even. rate : images per second; raises SceneError above `MOST`.
     """
     check_out(path, FILMS)
     if rate > (most := MOST[path.suffix]):

@@ -145,8 +145,7 @@ def _draw_one(ax: Axes, one: Map, colours: ScalarMappable) -> None:
 
 
 def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return the maps of peak velocity, one figure per variant; empty except for a rock mass in the
-    plane with snapshots."""
+    """Return a map of peak velocity per variant, for a plane rock mass with snapshots."""
     found = []
     for k, (variant, one) in enumerate(named(comparisons)):
         results = [one.results[engine] for engine in in_order(one.results)]

@@ -1,8 +1,7 @@
 """Propagation along a row of receivers: transfer function, phase speed and loss over frequency.
 
-The transfer function and 1/Q are between the first and last velocity receivers; the phase speed is
-from the f-k spectrum of all receivers (`compare.readings`). Theory is that of an infinite pillar
-(`dispersion_theory`).
+The transfer function and 1/Q are between the first and last velocity receivers, the phase speed is
+from the f-k spectrum of all of them, and theory is that of an infinite pillar.
 """
 
 from contextlib import suppress
@@ -90,8 +89,7 @@ def curves_of(comparison: Comparison) -> Curves:
 
 
 def _measured(result: xr.Dataset, row: xr.DataArray) -> dict[str, pd.Series]:
-    """Return one result's curves at the frequencies present at the first receiver; row : velocities
-    of its receivers."""
+    """Return one result's curves at frequencies present at the first receiver; row : velocities."""
     first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(transfer_function(result))
     speed, nearest = dispersion(result).phase_speed, row["distance"].diff("receiver").min()
     apart = abs(wave_speed(result)) / (2 * float(nearest))

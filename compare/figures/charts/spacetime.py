@@ -26,8 +26,7 @@ CAPTION = (
 
 
 class Diagram(NamedTuple):
-    """One diagram: its name, a heading with unit and range, its values [positions, times] in
-    `unit`, and its colour map."""
+    """A diagram: name, heading with unit and range, values [positions, times], unit, colour map."""
 
     name: str
     heading: str
@@ -42,8 +41,7 @@ def space_time(
     """Return the figures of one variant: the first engine with the differences between engines;
     and, folded, the differences of engines from the exact solutions of their own models.
 
-    Empty without motion. name : unique on the page. variant : its name there. fields : results by
-    name, from `along_pillar`.
+    Empty without motion. name, variant : on the page. fields : results of `along_pillar` by name.
     """
     engines = [engine for engine in in_order(fields) if engine in ENGINES]
     if not engines:

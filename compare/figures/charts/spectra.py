@@ -51,11 +51,10 @@ def tapered(values: np.ndarray) -> np.ndarray:
 
 
 def spectrum(values: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies (Hz) and dt |DFT|, the Fourier amplitude per Hz, of the tapered waveforms
-    [n, ...], padded with zeros.
+    """Return frequencies (Hz) and Fourier amplitudes per Hz, dt |DFT|, of waveforms [n, ...].
 
-    By Parseval's theorem the integral of twice its square over frequency equals that of the squared
-    tapered waveform over time.
+    The waveforms are tapered and padded. By Parseval's theorem twice the squared amplitude,
+    integrated over frequency, is the squared tapered waveform, integrated over time.
     """
     length = 1 << int(np.ceil(np.log2(PADDED * len(values))))
     return np.fft.rfftfreq(length, dt), dt * np.abs(np.fft.rfft(tapered(values), length, axis=0))

@@ -232,8 +232,7 @@ def _of_engine(engine: str, row: list[Panel]) -> Overlay:
 
 
 def variant_styles(count: int) -> list[Line]:
-    """Return the styles of overlaid variants, from wide and light to thin and dark, so that each is
-    visible where they coincide."""
+    """Return the styles of overlaid variants, wide and light to thin and dark: all stay visible."""
     few = VARIANTS[:4] if count <= 4 else VARIANTS[4:]
     at = np.linspace(0, len(few) - 1, count).round().astype(int)
     widths = np.linspace(3.4, 1.0, count).round(2).tolist()
@@ -241,8 +240,7 @@ def variant_styles(count: int) -> list[Line]:
 
 
 def changed_key(comparisons: list[Comparison]) -> str | None:
-    """Return the key in which variants differ, such as "joints.damping_ratio"; None if there is not
-    exactly one."""
+    """Return the only key in which variants differ, such as "joints.damping_ratio", or None."""
     scenes = [comparison.scene.model_dump(exclude=ASIDE) for comparison in comparisons]
     keys = pd.json_normalize(scenes, max_level=1).map(repr)
     changed = keys.columns[keys.nunique() > 1]

@@ -39,8 +39,7 @@ def sketch_of(scene: AnyScene) -> Sketch:
 
 
 def seen(scene: AnyScene) -> tuple[Blocks, slice]:
-    """Return the blocks of a scene in the plane, and the slice that orders their coordinates
-    (right, up)."""
+    """Return the plane blocks of a scene, and the slice that orders coordinates (right, up)."""
     if scene.is_column:
         return blocks_of_pillar(scene, 2), slice(None, None, -1)
     return blocks_of_scene(scene), slice(None)
@@ -104,8 +103,7 @@ def _of_pillar(scene: Scene) -> Sketch:
 
 
 def _end_load(scene: Scene, half: float, unit: np.ndarray) -> list[Artist]:
-    """Return the arrow of the load at the start, and words for components out of the drawing and
-    couples."""
+    """Return the arrow of the load at the start, and words for what an arrow cannot show."""
     load = scene.load
     if not load.amplitude:
         return []

@@ -81,8 +81,7 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
 def _faces(
     scene: RockMass, blocks: Blocks, kept: np.ndarray, shift: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray]:
-    """Return the visible faces [corners, 3], m, of the kept blocks, and their colours [n, 3], of a
-    joint set, an opening or the rock.
+    """Return visible faces [corners, 3], m, and their colours [n, 3] by joint set, opening or rock.
 
     kept : of each block [blocks]. shift : of the blocks [blocks, 3], m.
     """

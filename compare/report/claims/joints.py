@@ -96,8 +96,7 @@ def blocks_separate(comparisons: list[Comparison]) -> tuple[str, bool]:
 
 @claim("blocks coast, the velocity tends to zero behind the pulse", 10)
 def blocks_coast(comparisons: list[Comparison]) -> tuple[str, bool]:
-    """Between the pulse and its reflection from the end the velocity is constant, as no force acts,
-    and near zero."""
+    """Between pulse and reflection the velocity is constant, as no force acts, and near zero."""
     without = _by_tension(comparisons)[1]
     scene, moving = without.scene, waves.waveforms(without, "velocity")
     incident, reflected, _ = waves.arrivals(scene, scene.record.velocity[0])

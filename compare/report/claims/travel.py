@@ -104,8 +104,7 @@ def quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
 def left_by_the_quiet_end(comparisons: list[Comparison]) -> tuple[str, bool]:
     """The reflection at the quiet end of rigid blocks is that of the end block's mass.
 
-    Theory is applied to the pulse reflected by the free end; a tolerance of 1 % allows for tails
-    outside the window.
+    Theory is applied to the pulse from the free end; 1 % allows for tails outside the window.
     """
     scenes = {one.scene.ends.end: one for one in comparisons}
     sent, left = (waves.passages(scenes[end])[1][DEM.name] for end in ("free", "quiet"))
