@@ -174,12 +174,14 @@ class Held(NamedTuple):
     the first times the old one plus the second times the one without dashpots; the third holds the
     dashpots, N s/m. springs : [h, 3, freedoms, freedoms], of dashpots behind springs: the new
     closures are the first times the old ones plus the second, s, times the velocity; the third
-    times the closures is the force against the block, N/m. None without.
+    times the closures is the force against the block, N/m. None without. lever : [h, 3], m, from
+    the centroid to where forces act; with finite rotations it turns with the block.
     """
 
     block: np.ndarray
     matrices: np.ndarray
-    springs: Any = None
+    springs: Any
+    lever: np.ndarray
 
 
 class Blocks(NamedTuple):
@@ -284,7 +286,8 @@ def held_by(
     """
     lost = 0.25 * dt * (1 + keep) * np.linalg.solve(masses[block], dashpot)
     moves = np.linalg.inv(np.eye(dashpot.shape[1]) + lost)
-    return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1), springs)
+    matrices = np.stack([-moves @ lost, moves, dashpot], axis=1)
+    return Held(block, matrices, springs, np.zeros((len(block), 3)))
 
 
 def state_at_rest(model: Model) -> State:
