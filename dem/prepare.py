@@ -111,10 +111,4 @@ def held(blocks: RigidBlocks, loads: Loads, resistance: np.ndarray, dt: float, k
         springs = np.zeros((len(dashpot), 3, *dashpot.shape[1:]))
         for one in blocks.around.springs:
             springs[np.searchsorted(loads.rows, one.block)] = one.at(dt)
-    found = held_by(dashpot, loads.rows, blocks.masses, dt, keep, springs)
-    if blocks.finite:
-        for load in blocks.around.patterns:  # at one place of each face; a couple's is its middle
-            for block in np.unique(load.block):
-                arm = load.arm[load.block == block].mean(axis=0)
-                found.lever[np.searchsorted(loads.rows, block)] = arm
-    return found
+    return held_by(dashpot, loads.rows, blocks.masses, dt, keep, springs)

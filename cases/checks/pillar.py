@@ -106,9 +106,6 @@ def _of_lever(scene: Scene) -> Iterator[Wrong]:
         key, value = ("at", load.at) if load.arm is None else ("arm", load.arm)
         allowed = "rotates the blocks, which motion.rotation = 'none' excludes"
         yield f"load.{key}", value, allowed
-    if scene.motion.rotation == "finite" and scene.prestress is not None and load.is_eccentric:
-        allowed = "must be [0, 0] beside a prestress where motion.rotation = 'finite'"
-        yield "load.at", load.at, allowed
 
 
 def _of_load(scene: Scene) -> Iterator[Wrong]:

@@ -44,7 +44,6 @@ class BlockTable(NamedTuple):
     held: Any
     matrices: Any
     springs: Any
-    lever: Any
     places: np.ndarray
     gravity: np.ndarray
     tensor: Any
@@ -92,7 +91,7 @@ def make_stepper(
     """
     form, chunks, f = model.form, model.chunks, model.form.freedoms
     own, dt, stages = model.blocks, model.blocks.dt, form.stages
-    held, matrices, springs, lever = model.held or (None, None, None, None)
+    held, matrices, springs = model.held or (None, None, None)
     if held is None:
         drive = None  # the same kernel for all callers
     elif drive is None:
@@ -112,8 +111,8 @@ def make_stepper(
         len(chunks.place),
     )  # fmt: skip
     blocks = BlockTable(
-        inertia, 1.0 / inertia, mass, held, matrices, springs, lever, places, own.gravity,
-        own.tensor, None if own.tensor is None else np.linalg.inv(own.tensor),
+        inertia, 1.0 / inertia, mass, held, matrices, springs, places, own.gravity, own.tensor,
+        None if own.tensor is None else np.linalg.inv(own.tensor),
         free_motion(own) if form.finite else None, dt, own.keep, own.local, own.stages,
     )  # fmt: skip
     size = form.buffer.before + f * int(np.diff(chunks.first_block).max())

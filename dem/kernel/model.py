@@ -174,14 +174,12 @@ class Held(NamedTuple):
     the first times the old one plus the second times the one without dashpots; the third holds the
     dashpots, N s/m. springs : [h, 3, freedoms, freedoms], of dashpots behind springs: the new
     closures are the first times the old ones plus the second, s, times the velocity; the third
-    times the closures is the force against the block, N/m. None without. lever : [h, 3], m, from
-    the centroid to where forces act; with finite rotations it turns with the block.
+    times the closures is the force against the block, N/m. None without.
     """
 
     block: np.ndarray
     matrices: np.ndarray
-    springs: Any
-    lever: np.ndarray
+    springs: Any = None
 
 
 class Blocks(NamedTuple):
@@ -286,8 +284,7 @@ def held_by(
     """
     lost = 0.25 * dt * (1 + keep) * np.linalg.solve(masses[block], dashpot)
     moves = np.linalg.inv(np.eye(dashpot.shape[1]) + lost)
-    matrices = np.stack([-moves @ lost, moves, dashpot], axis=1)
-    return Held(block, matrices, springs, np.zeros((len(block), 3)))
+    return Held(block, np.stack([-moves @ lost, moves, dashpot], axis=1), springs)
 
 
 def state_at_rest(model: Model) -> State:

@@ -5,7 +5,7 @@ from math import copysign
 
 from jointwave.dem.contacts.chunks import LANES as L
 from jointwave.dem.kernel.model import KernelFlags
-from jointwave.dem.kernel.rotation import angular_momentum, carried, rate, three, turn_blocks
+from jointwave.dem.kernel.rotation import angular_momentum, rate, three, turn_blocks
 from jointwave.joints.formula import formula
 
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
@@ -49,15 +49,7 @@ def motion_for(form: KernelFlags) -> Callable:
             closure[r, a] = spare[a]
 
     @formula
-    def pull(blocks, r, turn, u, block, drive, n, a):
-        """Return what external forces, which stay at their places in a block, do to freedom a."""
-        found = drive[n, r, a]
-        if finite and a > 2:
-            found += carried(turn, u, block, blocks.lever[r], three(drive[n, r], 0, 1))[a - 3]
-        return found
-
-    @formula
-    def add_forces(blocks, first, last, begin, turn, u, v, force, before, drive, state, n):
+    def add_forces(blocks, first, last, begin, u, v, force, before, drive, state, n):
         """Add weight and external forces; return the potential energy of the weight, J."""
         potential = 0.0
         if gravity:
@@ -72,7 +64,7 @@ def motion_for(form: KernelFlags) -> Callable:
                 i = freedoms * blocks.held[r] - begin
                 for a in range(freedoms):
                     before[i + a] = v[i + a]
-                    force[i + a] += pull(blocks, r, turn, u, i // freedoms, drive, n, a)
+                    force[i + a] += drive[n, r, a]
                     if matched:
                         force[i + a] -= sprung(blocks, state.closure, r, a)
         return potential
@@ -169,12 +161,10 @@ def motion_for(form: KernelFlags) -> Callable:
     @formula
     def account_turned(blocks, first, r, turn, u, v, force, drive, n, kick, spare, ledger):
         """Do the same as `account_held`, from what `drag_turned` leaves in `spare`."""
-        block = blocks.held[r] - first
         for a in range(6):
-            i = 6 * block + a
+            i = 6 * (blocks.held[r] - first) + a
             old, new = spare[a], rate(blocks, first, turn, u, v, i)
-            given = 0.5 * kick * pull(blocks, r, turn, u, block, drive, n, a)
-            taken = -0.5 * spare[12 + a]
+            taken, given = -0.5 * spare[12 + a], 0.5 * kick * drive[n, r, a]
             if matched:
                 taken += 0.5 * kick * spare[18 + a]
             ledger[BOUNDARY] += taken * old
@@ -236,9 +226,7 @@ def motion_for(form: KernelFlags) -> Callable:
         before, pushed, turn = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep), state.turn
         if finite:
             turn = turn[tiles[BLOCK, t] : tiles[BLOCK, t + 1]]
-        potential = add_forces(
-            blocks, first, last, begin, turn, u, v, force, before, drive, state, n
-        )
+        potential = add_forces(blocks, first, last, begin, u, v, force, before, drive, state, n)
         if oblique:
             advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed, drift)
         else:

@@ -178,12 +178,6 @@ def quaternion(turn, u, block):
 
 
 @formula
-def carried(turn, u, block, arm, force):
-    """Return the moment that a force gains as its place turns with a block, (R a - a) x F."""
-    return cross(further(columns_less_one(quaternion(turn, u, block)), arm), force)
-
-
-@formula
 def turn_blocks(blocks, first, turn, u, v, dt):
     """Rotate the blocks from `first` on by their angular momenta over dt, s."""
     for block in range(u.size // 6):

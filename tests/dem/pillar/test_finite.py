@@ -36,32 +36,6 @@ def test_small_rotations_are_the_limit(pillar):
     np.testing.assert_allclose(strong / weak, 100, rtol=0.05)
 
 
-def test_a_force_goes_along_with_the_block_that_it_pushes(pillar):
-    """A free bar of two blocks between stiff joints, pushed across its end by a steady force F
-    along x, does the work of its end: (1/2) I w^2 = F (L/2) sin(angle), L its length, until it has
-    turned by more than half a turn. With the lever of the start it would spin ever faster."""
-    bar = pillar(
-        pillar__length=2.0,
-        pillar__block=1.0,
-        load={"shape": "step", "amplitude": 2e4, "direction": [1.0, 0.0, 0.0]},
-        motion__rotation="finite",
-        time__duration=0.8,
-        record={"velocity": [0.5], "interval": 0.004},
-        numerics={"allow_large_motion": True, "dem": {"step_fraction": 0.2}},
-    )
-    angle = dem.simulate(bar).rotation.sel(axis="z").values[0]
-    rate, side, p = np.gradient(angle, 0.004), bar.pillar.side, bar.rock
-    inertia = p.density * side**2 * 2.0 * (2.0**2 + side**2) / 12
-    assert np.abs(angle).max() > 2.0
-    expected = 2e4 * side**2 * 2.0 / inertia * np.sin(np.abs(angle))
-    np.testing.assert_allclose(rate**2, expected, rtol=0, atol=2e-2 * expected.max())
-
-
-def test_a_force_off_the_centre_beside_a_prestress_is_refused(pillar):
-    with pytest.raises(SceneError, match=r"load\.at .* beside a prestress"):
-        pillar(**BLOW, prestress={"normal": 1e6})
-
-
 def incline(pillar, slope):
     """Return the largest rotation of a loose block on a rough slope after one second."""
     angle = np.arctan(slope)
