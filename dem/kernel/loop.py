@@ -153,6 +153,20 @@ def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
     return record_contacts, record_blocks
 
 
+@formula
+def take_out(ledger, row, width):
+    """Return the sum of a term over its lanes, in four parts, and set the lanes to zero."""
+    a, b, c, d, end = 0.0, 0.0, 0.0, 0.0, row + width
+    for i in range(row, end - 3, 4):
+        a, b = a + ledger[i], b + ledger[i + 1]
+        c, d = c + ledger[i + 2], d + ledger[i + 3]
+    for i in range(end - width % 4, end):
+        a += ledger[i]
+    for i in range(row, end):
+        ledger[i] = 0.0
+    return (a + b) + (c + d)
+
+
 @cache
 def loop_for(form: KernelFlags) -> Callable:
     """Return the time loop of blocks with these effects; absent ones are not compiled.
@@ -256,11 +270,10 @@ def loop_for(form: KernelFlags) -> Callable:
                 for j in range(band, band + steps):
                     one = work.ledgers[j - band]
                     for term in range(state.sums.size):
-                        row, before, after = term * L, 0.0, 0.0
-                        sampled, summed = j % stride == 0, row in SUMMED
-                        for i in range(row, row + (widths[term] if sampled or summed else 0)):
-                            before, after = before + one[i], after + one[AFTER + i]  # fixed order
-                            one[i], one[AFTER + i] = 0.0, 0.0
+                        row, sampled = term * L, j % stride == 0
+                        summed = row in SUMMED
+                        width = widths[term] if sampled or summed else 0
+                        before, after = take_out(one, row, width), take_out(one, AFTER + row, width)
                         if sampled:
                             samples.energy[term, j // stride] = state.sums[term] + before
                         if summed:

@@ -19,20 +19,21 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
     dashpots, softening, varied, used = (
         parts.dashpots, parts.softening, parts.varied, rows_of(form.parts)
     )  # fmt: skip
-    AREA, START, LAW, JUMP, FORCE = (
-        form.table.area, form.table.start, form.buffer.law, form.buffer.jump, form.buffer.force
+    AREA, START, LAW, JUMP, FORCE, RATE, DRAG = (
+        form.table.area, form.table.start, form.buffer.law, form.buffer.jump, form.buffer.force,
+        form.buffer.rate, form.buffer.drag,
     )  # fmt: skip
-    RATE, DRAG, POINTS = form.history.rate, form.history.drag, form.history.size
+    LAST_RATE, LAST_DRAG, POINTS = form.history.rate, form.history.drag, form.history.size
     OPENING, WHOLE = POINTS + form.point.opening, POINTS + form.point.whole
 
     @formula
-    def force_of(law, table, h, ledger, g, c, gap, now, dt):
+    def force_of(law, table, h, q, g, c, gap, now, dt):
         """Return the force on j in lane c of chunk g; gap : m, and now : its rate, m/s."""
         area, rate, opening = table[g, AREA + c], 0.0, 0.0
         if stressed:
             gap = gap + table[g, START + c]
         if dashpots:
-            rate, h[g, RATE + c] = 1.5 * now - 0.5 * h[g, RATE + c], now
+            rate, h[g, LAST_RATE + c] = 1.5 * now - 0.5 * h[g, LAST_RATE + c], now
         if fails:
             if softening:
                 opening = h[g, OPENING + c]
@@ -51,9 +52,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                 drag = -law.normal_viscosity * rate
                 stress = stress + drag
         if drags:
-            drag = area * drag
-            ledger[VISCOUS + c] -= 0.5 * dt * now * (h[g, DRAG + c] + drag)
-            h[g, DRAG + c] = drag
+            q[RATE + c], q[DRAG + c] = now, area * drag
         return area * stress
 
     @formula
@@ -88,7 +87,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                 for c in range(lanes):
                     law, k = law_at(q, LAW + c, L) if varied else common, np.uint64(c)
                     gap, now = u[j + k] - u[i + k], v[j + k] - v[i + k]
-                    q[FORCE + c] = f = force_of(law, table, h, ledger, g, c, gap, now, dt)
+                    q[FORCE + c] = f = force_of(law, table, h, q, g, c, gap, now, dt)
                     force[i + k] += before - f
                     before = f
                 force[i + np.uint64(lanes)] += before
@@ -103,7 +102,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                     if shaken and w > 0:
                         gap, now = walls[n, 0, w], walls[n, 1, w]
                     gap, now = gap - u[i], now - v[i]
-                    q[FORCE + c] = f = force_of(law, table, h, ledger, g, c, gap, now, dt)
+                    q[FORCE + c] = f = force_of(law, table, h, q, g, c, gap, now, dt)
                     q[JUMP + c] = gap
                     force[i] -= f
                     if w <= 0:
@@ -111,6 +110,11 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                     elif shaken and has_ledger:
                         ledger[WORK + c] -= 0.5 * dt * f * walls[n, 1, w]
                         ledger[WORK + AFTER + c] -= 0.5 * dt * f * walls[n + 1, 1, w]
+            if drags:  # a loop of its own: one that stores to more arrays is not vectorised
+                for c in range(lanes):
+                    drag = q[DRAG + c]
+                    ledger[VISCOUS + c] -= 0.5 * dt * q[RATE + c] * (h[g, LAST_DRAG + c] + drag)
+                    h[g, LAST_DRAG + c] = drag
             if sampled:
                 if has_ledger:
                     for c in range(lanes):
