@@ -130,7 +130,7 @@ def _show_plan(one: plans.Plan, asked: Plan) -> None:
         for reason in dict.fromkeys(one.skipped.values()):
             terminal.say(f"skipped: {reason}")
         terminal.say(
-            f"{misfit} % is not met: no engine's model is near enough to the finest physics in time"
+            f"{misfit} % is not met: no engine's model is close enough to finest physics in time"
         )
         return
     terminal.say(f"numerical error: against {_named(best.reference)}, the engine's own model")
@@ -142,7 +142,7 @@ def _show_plan(one: plans.Plan, asked: Plan) -> None:
     chosen += jobs.options_of(best.elements.name)
     chosen += [part for text in [*asked.changes, *best.options] for part in ("--set", text)]
     terminal.say(shlex.join(chosen))
-    met = "the sum of errors meets" if one.is_met else "the nearest run, whose sum misses,"
+    met = "the sum of errors meets" if one.is_met else "nearest run: the sum of errors exceeds"
     terminal.say(f"{met} {misfit} %; planning took {len(one.runs)} runs and {one.planning:.2g} s")
 
 
