@@ -107,9 +107,9 @@ def of_stiff_elements(found: SceneBody) -> Iterator[str]:
         turns = len(scene.joint_sets) > 1 or not scene.boundaries.sides("periodic")
     if scene.numerics.continuum.order > 1 or body.x.shape[1] == 1 or not turns:
         return
-    ratios = {"joints": _of_joints(found)} if len(body.joints.column) else {}
+    ratios = {"joints": _joint_ratio(found)} if len(body.joints.column) else {}
     if scene.is_column:
-        ratios["rock"] = _of_bending(body, scene.pillar.side)
+        ratios["rock"] = _bending_ratio(body, scene.pillar.side)
     if max(ratios.values(), default=0.0) > STIFFER:
         times = " and ".join(f"{name} {ratio:.3g}" for name, ratio in ratios.items())
         yield (
@@ -118,7 +118,7 @@ def of_stiff_elements(found: SceneBody) -> Iterator[str]:
         )
 
 
-def _of_joints(found: SceneBody) -> float:
+def _joint_ratio(found: SceneBody) -> float:
     """Return the second moments of the joints' points over those of their faces."""
     faces, joints = found.blocks.contacts, found.body.joints
     exact = np.trace(faces.second_moment, axis1=1, axis2=2)
@@ -128,7 +128,7 @@ def _of_joints(found: SceneBody) -> float:
     return float(weight @ away / exact[np.unique(column)].sum()) if len(column) else 0.0
 
 
-def _of_bending(body: Body, side: float) -> float:
+def _bending_ratio(body: Body, side: float) -> float:
     """Return the bending stiffness of a pillar's rock at constant width, over that of a beam."""
     x, across, along = body.x, np.zeros_like(body.x), np.zeros_like(body.x)
     along[:, 1], across[:, 1], across[:, 0] = x[:, 1], x[:, 0] * x[:, 1], -(x[:, 1] ** 2) / 2
@@ -137,11 +137,8 @@ def _of_bending(body: Body, side: float) -> float:
 
 
 def choose(scene: AnyScene, problem: Problem, critical: float) -> Choice:
-    """Return the time steps of a scene, for "auto" the faster scheme by operation counts; critical
-    : critical step of explicit steps, s.
-
-    Raises SceneError for an unstable step or too many steps.
-    """
+    """Return the time steps of a scene, for "auto" by the faster scheme; critical : of explicit
+    steps, s. Raises SceneError for an unstable step or too many steps."""
     numerics = scene.numerics.continuum
 
     def explicit(reason: str) -> Choice:

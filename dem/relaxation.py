@@ -39,12 +39,12 @@ UNBORNE = "what quiet boundaries bear of the weight is not found: fix the one be
 #: blocks that rest on ever fewer contact points come to rest ever more slowly.
 PATIENCE = 80
 STEADY = 0.9  # ratio of successive distances of steady motion: 1 at constant speed, 3 from rest
-PARTS = 40  # stages of releasing the walls of openings where joints may slip or open
-STUCK = 1e-4  # out-of-balance ratio with sticking joints, before they may slip and open
-FELT = 1e-4  # default residual force, over the force of loads and waves on a block
+STAGES = 40  # stages of releasing the walls of openings where joints may slip or open
+STICKING_RATIO = 1e-4  # out-of-balance ratio with sticking joints, before they may slip and open
+RESIDUAL = 1e-4  # default residual force, over the force of loads and waves on a block
 LEAST = 1e-12  # smallest default of the out-of-balance ratio
-RESISTED = 1e-9  # of the largest resistance: smaller ones count as none
-LOOKS = 0.3  # chunks of ten steps after each stage, over the root of the number of blocks
+NO_RESISTANCE = 1e-9  # of the largest resistance: smaller ones count as none
+CHUNKS_A_STAGE = 0.3  # chunks of ten steps after each stage, over the root of the number of blocks
 
 
 class Rest(NamedTuple):
@@ -109,7 +109,7 @@ def unstressed(model: Model) -> Chunks:
     return model.chunks._replace(table=table)
 
 
-def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
+def unresisted(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
     """Return matrices [h, F, F] that project block velocities onto those without resistance.
 
     resistance : force and moment per velocity [h, F, F], of any magnitude. masses : [h, F, F].
@@ -117,11 +117,11 @@ def still(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
     root = np.linalg.cholesky(masses)
     back = np.linalg.inv(root)
     size, axes = np.linalg.eigh(back @ resistance @ back.swapaxes(1, 2))
-    axes *= (size <= RESISTED * size.max(initial=0.0))[:, None, :]
+    axes *= (size <= NO_RESISTANCE * size.max(initial=0.0))[:, None, :]
     return back.swapaxes(1, 2) @ axes @ axes.swapaxes(1, 2) @ root.swapaxes(1, 2)
 
 
-def slowed(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
+def mass_factors(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
     """Return factors of the mass matrices [N, 1, 1] that give all blocks the same critical step.
 
     Groups of blocks without a wall keep their masses: they come to rest about their centre of mass.
@@ -155,7 +155,7 @@ class BlockRelaxation:
         blocks, model, loads = system.blocks, system.model, system.loads
         self.scene = blocks.scene
         columns = blocks.columns._replace(time_constants=None)
-        masses = blocks.masses * slowed(blocks.contacts, columns, blocks.masses)
+        masses = blocks.masses * mass_factors(blocks.contacts, columns, blocks.masses)
         dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
         own = constants(blocks, dt, masses)._replace(local=0.0, mass=blocks.inertia[:, 0])
         laws = model.laws.copy()
@@ -181,7 +181,7 @@ class BlockRelaxation:
         if weighed and held is not None:
             resistance = nothing.copy()
             resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
-            held.matrices[:, 1] = still(resistance, masses[rows])
+            held.matrices[:, 1] = unresisted(resistance, masses[rows])
         form = model.form._replace(stages=1)
         self.model = model._replace(form=form, blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
@@ -195,7 +195,7 @@ class BlockRelaxation:
         weight = float(np.linalg.norm(own.gravity) * blocks.inertia[:, 0].sum())
         self.scale = weight + (blocks.pressed if stress is not None else 0.0)
         numerics, area = self.scene.numerics.dem, blocks.contacts.area
-        wave = FELT * stresses(self.scene)[1] * float(np.median(area) if area.size else 0.0)
+        wave = RESIDUAL * stresses(self.scene)[1] * float(np.median(area) if area.size else 0.0)
         self.goal = numerics.static_tolerance
         if wave and self.scale and "static_tolerance" not in numerics.model_fields_set:
             self.goal = min(self.goal, max(wave / self.scale, LEAST))
@@ -213,15 +213,15 @@ class BlockRelaxation:
 
         walls : forces of the walls on blocks, in the rows of `steady`.
         """
-        whole, looks = self.steady, ceil(LOOKS * np.sqrt(self.count))
-        for part in range(1, PARTS):
-            self.steady = whole + (1 - part / PARTS) * walls
+        whole, chunks = self.steady, ceil(CHUNKS_A_STAGE * np.sqrt(self.count))
+        for stage in range(1, STAGES):
+            self.steady = whole + (1 - stage / STAGES) * walls
             now = self.look()
-            for _ in range(looks):
+            for _ in range(chunks):
                 now = self.damp(*now)
             self.state.v[:] = 0.0
         self.steady = whole
-        return (PARTS - 1) * looks * STEPS_AT_ONCE
+        return (STAGES - 1) * chunks * STEPS_AT_ONCE
 
     def stick(self) -> int:
         """Relax with joints that neither slip nor open, if some can, and return the steps taken.
@@ -233,9 +233,9 @@ class BlockRelaxation:
         self.model.laws[:] = sticking(own)
         self.model.laws[closes] = own[closes]
         self.state.history[:] = state_at_rest(self.model).history
-        rest = self.relax(STUCK)
+        rest = self.relax(STICKING_RATIO)
         self.model.laws[:] = own
-        at = self.state if rest.ratio <= STUCK else before
+        at = self.state if rest.ratio <= STICKING_RATIO else before
         fill(self.state, before._replace(u=at.u, turn=at.turn))
         return rest.steps
 

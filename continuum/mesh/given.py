@@ -60,8 +60,8 @@ def mesh_of_file(
     resolved : numbers of the resolved joints. dim : required dimension; None for any.
 
     The law of a facet is that of the pillar's joint nearest in y: to the facet if it lies across
-    the pillar, to the mean of all other facets of its group otherwise. Raises SceneError if the
-    file does not fit the scene.
+    the pillar, else to the mean of all such facets of its group. Raises SceneError if the file does
+    not fit the scene.
     """
     numerics, p = scene.numerics.continuum, calibrate(scene)
     order, path = numerics.order, numerics.mesh_path

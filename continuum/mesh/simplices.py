@@ -35,7 +35,7 @@ def simplex_mesh(
     Raises ImportError, with installation instructions, without gmsh.
     """
     tolerance = ALIKE * float(np.ptp(body.vertices, axis=0).max())
-    groups = _alike(body, tolerance)
+    groups = _equal_blocks(body, tolerance)
     with gmsh_session() as gmsh:
         for name in ("Geometry.AutoCoherence", "Mesh.MeshSizeExtendFromBoundary"):
             gmsh.option.setNumber(name, 0)
@@ -50,7 +50,7 @@ def simplex_mesh(
     return _placed(body, groups, found, tolerance)
 
 
-def _alike(body: Complex, tolerance: float) -> list[Alike]:
+def _equal_blocks(body: Complex, tolerance: float) -> list[Alike]:
     """Return groups of blocks that are equal up to a shift; in space each block alone."""
     half, x = body.halves(), body.vertices
     groups: dict[Any, list] = defaultdict(list)

@@ -74,7 +74,7 @@ class SharedLeapfrog(Leapfrog):
         kernel, state = leapfrog_for(self.flags), self.state
         given = self.constants, state, self.work, self.samples
         for vector in (state.u, state.v, state.v_before, *state.elongation):
-            self._follow(vector)
+            self._update_halo(vector)
         for begin, drive, moved in self._driven(self._share.problem, first, last):
             kernel(*given, drive[:0], moved[:0], (begin, begin, stride))  # compiles
             for k in range(len(moved)):
@@ -87,7 +87,7 @@ class SharedLeapfrog(Leapfrog):
         """Advance the halo by a step, with velocities of the processes that own it."""
         state, halo = self.state, slice(self.product.size, None)
         state.v_before[halo] = state.v[halo]
-        self._follow(state.v)
+        self._update_halo(state.v)
         state.u[halo] += self.dt * state.v[halo]
         if self.flags.relaxing:
             memory, past = self.constants.memory, state.elongation[:, halo]
@@ -100,7 +100,7 @@ class SharedLeapfrog(Leapfrog):
                 some = rows[:, first:last]
                 some[:] = sum(self.problem.comm.allgather(some))
 
-    def _follow(self, vector: np.ndarray) -> None:
+    def _update_halo(self, vector: np.ndarray) -> None:
         """Update the halo of a vector from the processes that own it."""
         self._forest.bcastBegin(MPI.DOUBLE, vector, vector, MPI.REPLACE)
         self._forest.bcastEnd(MPI.DOUBLE, vector, vector, MPI.REPLACE)

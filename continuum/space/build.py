@@ -90,7 +90,7 @@ class Elements:
             return np.unique(places, axis=0, return_inverse=True)[1].reshape(-1)
         whole = [(one.pairs.of(~one.joint), one.vertices) for one in self.across]
         sides = [
-            np.stack([t.node.ravel() for t in self._both(*one)], axis=1)
+            np.stack([t.node.ravel() for t in self._pair_of_traces(*one)], axis=1)
             for one in whole
             if len(one[0].cell)
         ]
@@ -101,7 +101,9 @@ class Elements:
         own = self.mesh.cells if vertices is None else vertices[self.mesh.cells]
         return trace(self.cell, self.nodes, own, self.corners, facets)
 
-    def _both(self, pairs: Places, vertices: np.ndarray | None = None) -> tuple[Trace, Trace]:
+    def _pair_of_traces(
+        self, pairs: Places, vertices: np.ndarray | None = None
+    ) -> tuple[Trace, Trace]:
         """Return the nodes of facets of blocks i and of their partners, of blocks j."""
         return self._trace(pairs.side(0), vertices), self._trace(pairs.side(1), vertices)
 
@@ -141,7 +143,7 @@ class Elements:
             return JumpOperator(none, np.zeros(0), none[:, 0], frame, self.x[:0])
         i, j = (
             Trace(*map(np.concatenate, zip(*side, strict=True)))
-            for side in zip(*(self._both(*one[:2]) for one in parts), strict=True)
+            for side in zip(*(self._pair_of_traces(*one[:2]) for one in parts), strict=True)
         )
         if closed := int((i.node == j.node).all(axis=1).sum()):
             log.warning(

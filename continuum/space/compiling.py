@@ -21,7 +21,7 @@ INSTALL = "apt install gcc python3-dev, or conda install c-compiler"
 
 
 def compiled(make: Callable[[], Made]) -> Made:
-    """Return the result of a dolfinx call that compiles, one process at a time; announce waits.
+    """Return the result of a dolfinx call that compiles, in one process at a time, and announce it.
 
     Raises ImportError, with installation instructions, if the compiler is missing or fails.
     """

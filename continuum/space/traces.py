@@ -78,7 +78,7 @@ def trace(
     which, parts = which.reshape(-1), []
     for k, (facet, *corners) in enumerate(kinds.tolist()):
         some = of.cell[which == k]
-        local, shares = _on(cell, corners)
+        local, shares = _nodes_on(cell, corners)
         places = x[some]
         normal, _ = _normals(cell, facet, cell.shares[local][:, facets[facet]], places)
         _, area = _normals(cell, facet, cell.at, places)
@@ -88,7 +88,7 @@ def trace(
     return Trace(*(np.concatenate(one)[back] for one in zip(*parts, strict=True)))
 
 
-def _on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
+def _nodes_on(cell: Reference, corners: list[int]) -> tuple[np.ndarray, np.ndarray]:
     """Return the nodes [q] on a facet, and the shape functions of its corners there [q, c]."""
     others = np.delete(cell.shares, corners, axis=1)
     local = np.flatnonzero(np.abs(others).max(axis=1) < ON)

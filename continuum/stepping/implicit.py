@@ -133,20 +133,20 @@ class Implicit:
             if n == 0:
                 self._begin()
             else:
-                self._reach(n - 1, 0.0, 1.0, stride)
+                self._advance(n - 1, 0.0, 1.0, stride)
             if n % stride == 0:
                 self._record(n // stride)
 
     def _begin(self) -> None:
         """Set the acceleration at t = 0 from the forces."""
         now, own = self.now, self.balance
-        self._hold(now, 0, 0.0)
+        self._move_held(now, 0, 0.0)
         past, external = copied(now.forces.past), self._external(0, 0.0)
         forces = own.forces(now.u, now.v, 0 * now.u, self.dt, past, external)
         now.a[own.free] = (forces.whole / own.mass)[own.free]
         fill(now.forces, forces)
 
-    def _reach(self, n: int, begin: float, end: float, stride: int) -> None:
+    def _advance(self, n: int, begin: float, end: float, stride: int) -> None:
         """Advance from one fraction of step n to another, in halves if that does not converge."""
         if self._step(n, begin, end):
             return
@@ -160,15 +160,15 @@ class Implicit:
             error.samples = n // stride + 1
             raise error
         middle = (begin + end) / 2
-        self._reach(n, begin, middle, stride)
-        self._reach(n, middle, end, stride)
+        self._advance(n, begin, middle, stride)
+        self._advance(n, middle, end, stride)
 
     def _step(self, n: int, begin: float, end: float) -> bool:
         """Try a step, and keep its result if it converges; return whether it does."""
         alpha_m, alpha_f, beta, gamma = self.scheme
         own, now, dt = self.balance, self.now, (end - begin) * self.dt
         trial, external = copied(now), self._external(n, end)
-        self._hold(trial, n, end)
+        self._move_held(trial, n, end)
         drift = dt * now.v + (0.5 - beta) * dt**2 * now.a
         before = alpha_f * now.forces.whole - alpha_m * (own.mass * now.a)
         forces, r, free = [now.forces], gamma / (beta * dt), own.free
@@ -192,7 +192,7 @@ class Implicit:
 
         outcome = newton(residual, correction, (drift + beta * dt**2 * now.a)[free])
         if outcome.converged:
-            self._enter(trial, forces[0])
+            self._add_work(trial, forces[0])
             fill(now, trial._replace(forces=forces[0]))
         return outcome.converged
 
@@ -210,7 +210,7 @@ class Implicit:
         self.counts[1] += 1
         return found
 
-    def _enter(self, trial: Moment, forces: Forces) -> None:
+    def _add_work(self, trial: Moment, forces: Forces) -> None:
         """Add the work of all forces over a step to the ledger, by the trapezoidal rule."""
         now, sums, held = self.now, trial.sums, self.problem.held.freedom
         moved = trial.u - now.u
@@ -230,7 +230,7 @@ class Implicit:
             found[forces.freedom] = (1 - share) * first + share * last
         return found
 
-    def _hold(self, moment: Moment, n: int, share: float) -> None:
+    def _move_held(self, moment: Moment, n: int, share: float) -> None:
         """Set the motion of held freedoms at step n plus a fraction of the step."""
         held = self.problem.held
         if held.moved is not None:

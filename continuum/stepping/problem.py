@@ -69,9 +69,9 @@ class Problem(NamedTuple):
     """A body with its joint law, loads and boundaries; absent parts are None.
 
     law : of the joints, in columns. stiffest : largest K_n and K_s in reach of each column, Pa/m,
-    numbers or arrays. stress : in rock and joints at u = 0 [d, d], Pa, compression positive. alpha
-    : of mass-proportional damping, 1/s. mechanisms : of the relaxation of rock, whose stiffness is
-    then unrelaxed. steady : constant forces [freedoms], N. forces : with a history, as
+    numbers or arrays. stress : in rock and joints at u = 0 [d, d], Pa, compression positive.
+    alpha : of mass-proportional damping, 1/s. mechanisms : of the relaxation of rock, whose
+    stiffness is then unrelaxed. steady : constant forces [freedoms], N. forces : with a history, as
     `loads.forces.Loads`. comm : mpi4py communicator of processes that share the run. counted :
     number of points, the first ones, whose energies this process counts; None for all.
     """

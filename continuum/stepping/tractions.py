@@ -49,7 +49,7 @@ def components(dim, values, q):
 
 
 @formula
-def put(dim, values, q, n, x, z):
+def set_components(dim, values, q, n, x, z):
     """Set the components of a vector at a point."""
     values[dim * q] = n
     if dim > 1:
@@ -126,8 +126,8 @@ def tractions_for(parts: LawFlags, dim: int, stressed: bool) -> Callable:
             n, x, z = found.n - p_n, found.x - p_x, found.z - p_z
             if dashpots:
                 n, x, z = n - found.drag_n, x - found.drag_x, z - found.drag_z
-                put(dim, drag, q, w * found.drag_n, w * found.drag_x, w * found.drag_z)
-            put(dim, force, q, w * n, w * x, w * z)
+                set_components(dim, drag, q, w * found.drag_n, w * found.drag_x, w * found.drag_z)
+            set_components(dim, force, q, w * n, w * x, w * z)
             slid += counted * found.slid
             stored += counted * found.stored
             spent += counted * found.spent

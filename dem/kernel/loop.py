@@ -88,7 +88,7 @@ def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
     JUMP, RATE, NOW, DRAG = rows.jump, rows.rate, rows.now, rows.drag
 
     @formula
-    def differ(h, q, dt):
+    def difference_rates(h, q, dt):
         """Set the jump rates half a step before as differences of the jump (finite rotations)."""
         for c in range(motions * L):
             jump = q[JUMP + c]
@@ -113,7 +113,7 @@ def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
                 ledger[VISCOUS + c - a * L] -= 0.5 * dt * (q[DRAG + c] * q[RATE + c])
                 h[LAST_DRAG + c] = q[DRAG + c]
 
-    return differ, extrapolate, account_drags
+    return difference_rates, extrapolate, account_drags
 
 
 def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
@@ -181,7 +181,7 @@ def loop_for(form: KernelFlags) -> Callable:
     LAW, JUMP, RATE, ON_J = form.buffer.law, form.buffer.jump, form.buffer.rate, form.buffer.on_j
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
-    differ, extrapolate, account_drags = rates_for(form)
+    difference_rates, extrapolate, account_drags = rates_for(form)
     record_contacts, record_blocks = records_for(form)
     row_forces = row_forces_for(form, record_contacts)
 
@@ -232,7 +232,7 @@ def loop_for(form: KernelFlags) -> Callable:
                                 h = state.history[g]
                             relative(u, turn, walls, n, 0, still, at, row_from, contacts, q, JUMP)
                             if rated and finite:
-                                differ(h, q, dt)
+                                difference_rates(h, q, dt)
                             elif rated:
                                 relative(
                                     v, turn, walls, n, 1, still, at, row_from, contacts, q, RATE

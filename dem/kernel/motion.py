@@ -30,7 +30,7 @@ def motion_for(form: KernelFlags) -> Callable:
     stages, composed, AT_ONCE = form.stages, form.stages > 1, L - L % freedoms
 
     @formula
-    def sprung(blocks, closure, r, a):
+    def spring_force(blocks, closure, r, a):
         """Return the force of the springs against freedom a of held block r."""
         found = 0.0
         for m in range(freedoms):
@@ -67,19 +67,19 @@ def motion_for(form: KernelFlags) -> Callable:
                     before[i + a] = v[i + a]
                     force[i + a] += drive[n, r, a]
                     if matched:
-                        force[i + a] -= sprung(blocks, state.closure, r, a)
+                        force[i + a] -= spring_force(blocks, state.closure, r, a)
         return potential
 
     @formula
-    def advance(u, v, force, inverse, before, pushed, drift, keep, local, noted):
-        """Advance velocities by the forces, then displacements by the velocities; with `noted`,
+    def advance(u, v, force, inverse, before, pushed, drift, keep, local, keep_old):
+        """Advance velocities by the forces, then displacements by the velocities; with `keep_old`,
         store the old velocities for the ledger."""
         for i in range(u.size):
             old, gain = v[i], pushed * force[i]
             if local_damping:  # less by local |gain| along v
                 gain = gain - local * copysign(abs(gain), old) if old != 0.0 else gain
             new = (keep * old if mass_damping else old) + gain * inverse[i]
-            if has_ledger and noted:
+            if has_ledger and keep_old:
                 before[i] = old
             if not balanced:
                 force[i] = 0.0
@@ -121,7 +121,7 @@ def motion_for(form: KernelFlags) -> Callable:
         return found
 
     @formula
-    def drag_held(blocks, first, last, begin, u, v, before, spare):
+    def apply_dashpots(blocks, first, last, begin, u, v, before, spare):
         """Apply the boundary dashpots: correct the velocity and displacement of held blocks."""
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
@@ -135,7 +135,7 @@ def motion_for(form: KernelFlags) -> Callable:
                 v[i + a] = spare[a]
 
     @formula
-    def drag_turned(blocks, first, r, turn, u, v, inertia, before, closure, spare):
+    def apply_dashpots_turned(blocks, first, r, turn, u, v, inertia, before, closure, spare):
         """Apply the boundary dashpots of held block r with finite rotations: the impulse is that on
         the unrotated block. Leave in `spare` the old and new velocities, impulses, spring forces.
         """
@@ -150,7 +150,7 @@ def motion_for(form: KernelFlags) -> Callable:
                 change += matrices[0, a, m] * spare[m] + matrices[1, a, m] * spare[6 + m]
             spare[12 + a] = change
             if matched:
-                spare[18 + a] = sprung(blocks, closure, r, a)
+                spare[18 + a] = spring_force(blocks, closure, r, a)
         for a in range(3):
             u[i + a] += blocks.dt * spare[12 + a]
             spare[12 + a] *= inertia[i + a]
@@ -161,7 +161,7 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_turned(blocks, first, r, turn, u, v, force, drive, n, kick, spare, ledger):
-        """Do the same as `account_held`, from what `drag_turned` leaves in `spare`."""
+        """Do the same as `account_held`, from what `apply_dashpots_turned` leaves in `spare`."""
         for a in range(6):
             i = 6 * (blocks.held[r] - first) + a
             old, new = spare[a], rate(blocks, first, turn, u, v, i)
@@ -176,7 +176,8 @@ def motion_for(form: KernelFlags) -> Callable:
 
     @formula
     def account_held(blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger):
-        """Add the work of external forces and dashpots to the ledger, and drag to damped forces."""
+        """Add the work of external forces and dashpots to the ledger; with damping, subtract the
+        dashpot forces from `force`."""
         for r in range(first, last):
             i, matrices = freedoms * blocks.held[r] - begin, blocks.matrices[r]
             for a in range(freedoms):
@@ -185,7 +186,7 @@ def motion_for(form: KernelFlags) -> Callable:
                     drag += matrices[2, a, m] * (0.5 * (before[i + m] + v[i + m]))
                 taken, given = 0.5 * kick * drag, 0.5 * kick * drive[n, r, a]
                 if matched:
-                    taken += 0.5 * kick * sprung(blocks, state.closure, r, a)
+                    taken += 0.5 * kick * spring_force(blocks, state.closure, r, a)
                 ledger[BOUNDARY] += taken * old
                 ledger[BOUNDARY + AFTER] += taken * new
                 ledger[WORK] += given * old
@@ -238,13 +239,15 @@ def motion_for(form: KernelFlags) -> Callable:
         if held and finite:
             block, spare = tiles[BLOCK, t], q[SPARE:]
             for r in range(first, last):
-                drag_turned(blocks, block, r, turn, u, v, inertia, before, state.closure, spare)
+                apply_dashpots_turned(
+                    blocks, block, r, turn, u, v, inertia, before, state.closure, spare
+                )
                 if has_ledger:
                     account_turned(
                         blocks, block, r, turn, u, v, force, drive, n, kick, spare, ledger
                     )
         elif held:
-            drag_held(blocks, first, last, begin, u, v, before, q[SPARE:])
+            apply_dashpots(blocks, first, last, begin, u, v, before, q[SPARE:])
         if has_ledger:
             if held and not finite:
                 account_held(

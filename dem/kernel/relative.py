@@ -27,7 +27,7 @@ from jointwave.joints.formula import formula
 
 
 @formula
-def put(q, row, values):
+def set_three(q, row, values):
     """Set three consecutive rows of the buffer."""
     q[row], q[row + L], q[row + 2 * L] = values
 
@@ -108,9 +108,9 @@ def finite_moments_for(form: KernelFlags) -> Callable:
             moment = turned(frame, plus(moment, cross(arm, force)))
             force = turned(frame, force)
             apart = plus(three(q, GATHERED + c, L), minus(three(k, ARM_I + c, L), arm))
-            put(q, ON_J + c, force)
-            put(q, ON_J + 3 * L + c, moment)
-            put(q, ON_I + c, plus(moment, cross(apart, force)))
+            set_three(q, ON_J + c, force)
+            set_three(q, ON_J + 3 * L + c, moment)
+            set_three(q, ON_I + c, plus(moment, cross(apart, force)))
 
     return finite_moments
 
@@ -213,13 +213,13 @@ def onto_blocks_for(form: KernelFlags) -> Callable:
                 q[i] = m + (k[ARM_I + c] * y - k[ARM_I + L + c] * x)
             else:
                 force = in_axes(k, FRAME + c, three(q, FORCE + c, L))
-                put(q, j, force)
+                set_three(q, j, force)
                 if turns:
                     s = SPREAD + c
                     moment = q[s + 2 * L] - q[s + 4 * L], q[s + 3 * L], -q[s]
                     moment = in_axes(k, FRAME + c, moment)
-                    put(q, j + 3 * L, plus(moment, cross(three(k, ARM_J + c, L), force)))
-                    put(q, i, plus(moment, cross(three(k, ARM_I + c, L), force)))
+                    set_three(q, j + 3 * L, plus(moment, cross(three(k, ARM_J + c, L), force)))
+                    set_three(q, i, plus(moment, cross(three(k, ARM_I + c, L), force)))
 
     @formula
     def onto_blocks(k, q, at, row_from, lanes, last, force):

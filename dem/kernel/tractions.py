@@ -71,7 +71,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
         return History(opening, slide_x, slide_z, cohesion, path)
 
     @formula
-    def remember(h, before, c, after):
+    def store_history(h, before, c, after):
         """Replace the history of a point."""
         h[before + c] = after.slide_x
         if dim > 2:
@@ -145,7 +145,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
                 if dashpots:
                     rate = at_point(q, NOW, c, e_1, e_2)
                 found = traction(law, parts, (gap, x, z), moved, rate, dt, history_at(h, before, c))
-                remember(h, before, c, found.history)
+                store_history(h, before, c, found.history)
                 if softening:
                     whole = found.history.opening < law.critical_opening
                     h[before + WHOLE + c] += 1.0 if whole else 0.0
@@ -176,7 +176,7 @@ def face_forces_for(form: KernelFlags) -> Callable:
     AREA, START, SECOND = form.table.area, form.table.start, form.table.second
 
     @formula
-    def push(laws, k, q, ledger, weighed):
+    def set_forces(laws, k, q, ledger, weighed):
         """Set the forces due to the jump at the centre."""
         common = law_of(laws, 0)
         for a in range(dim):
@@ -198,7 +198,7 @@ def face_forces_for(form: KernelFlags) -> Callable:
                 q[FORCE + r] = f
 
     @formula
-    def bend(laws, k, q, ledger, weighed):
+    def set_moments(laws, k, q, ledger, weighed):
         """Set the first moments due to the relative rotation, by the face's second moments."""
         common = law_of(laws, 0)
         for c in range(L):
@@ -239,8 +239,8 @@ def face_forces_for(form: KernelFlags) -> Callable:
     @formula
     def face_forces(laws, k, h, q, ledger, dt, weighed):
         """Set the rows of the contacts' forces and first moments, as `point_forces` does."""
-        push(laws, k, q, ledger, weighed)
+        set_forces(laws, k, q, ledger, weighed)
         if turns:
-            bend(laws, k, q, ledger, weighed)
+            set_moments(laws, k, q, ledger, weighed)
 
     return face_forces
