@@ -35,7 +35,7 @@ BLOCK_STEPS_AT_ONCE = 20_000_000  # in some 10 ms to 1 s: often enough for a pro
 LOOKS = 20  # checks of a run, at least: blocks may move too far
 LEAST_STEPS = 64  # at a time: each thread copies its blocks before and after
 MOST_OF_DRIVE = 2_000_000  # force components on held blocks in memory at a time
-TURNED_FOR = 64  # steps at most, a few vibrations of a block, that the arm of a load stands still
+TURNED_FOR = 64  # most steps between updates of a load's arm: a few vibrations of a block
 
 
 def simulate(
@@ -128,7 +128,7 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
     size = min(max(1, MOST_OF_DRIVE // max(1, width)), time.stride * time.samples)
     drive, shake, shaking = None, None, system.shaking
     turns = model.held is not None and model.form.finite and system.blocks.scene.load.arm is None
-    if turns:  # a divisor of the stride: runs in other chunks are the same bit by bit
+    if turns:  # a divisor of the stride: results do not depend on the chunks, bit for bit
         size = max(n for n in range(1, TURNED_FOR + 1) if time.stride % n == 0)
     if model.held is not None:
         drive = np.zeros((stages * size, len(loads.rows), model.form.freedoms))

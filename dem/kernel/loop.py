@@ -155,7 +155,7 @@ def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
 
 @formula
 def take_out(ledger, row, width):
-    """Return the sum of a term over its lanes, in four parts, and set the lanes to zero."""
+    """Return the sum of a term over its lanes, by four partial sums, and set the lanes to zero."""
     a, b, c, d, end = 0.0, 0.0, 0.0, 0.0, row + width
     for i in range(row, end - 3, 4):
         a, b = a + ledger[i], b + ledger[i + 1]

@@ -11,8 +11,8 @@ from jointwave.joints.formula import formula
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
 CHUNK, BLOCK, HELD, PLACE, SEEN = range(5)
 #: Rows of the ledger of one step, J in lanes, in the order of `results.dataset.TERMS`; at an offset
-#: AFTER, the same rows for the half step after it: not 4096 bytes away, as loads and stores at such
-#: distances wait for each other (300 ns a step of 100 blocks).
+#: AFTER, the same rows for the half step after it. AFTER is not 4096 bytes: at this distance loads
+#: wait for stores (300 ns a step of 100 blocks).
 KINETIC, ELASTIC, VISCOUS, FRICTION, FRACTURE, BOUNDARY, GRAVITY, WORK = range(0, 8 * L, L)
 AFTER = 8 * L + 8
 SUMMED = VISCOUS, FRICTION, BOUNDARY, WORK  # over steps; the others are states

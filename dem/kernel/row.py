@@ -110,7 +110,7 @@ def row_forces_for(form: KernelFlags, record: Callable) -> Callable:
                     elif shaken and has_ledger:
                         ledger[WORK + c] -= 0.5 * dt * f * walls[n, 1, w]
                         ledger[WORK + AFTER + c] -= 0.5 * dt * f * walls[n + 1, 1, w]
-            if drags:  # a loop of its own: one that stores to more arrays is not vectorised
+            if drags:  # a separate loop: one that stores to more arrays is not vectorised
                 for c in range(lanes):
                     drag = q[DRAG + c]
                     ledger[VISCOUS + c] -= 0.5 * dt * q[RATE + c] * (h[g, LAST_DRAG + c] + drag)

@@ -78,8 +78,8 @@ class Loads:
         return self._on_blocks(instants(steps) if self.composed else steps)
 
     def turned(self, steps: np.ndarray, turn: np.ndarray) -> np.ndarray:
-        """Return what moments gain as the arms of loads that do not act all the time turn with
-        blocks by R - 1, [h, 3, 3]: [n, h, 3], N m."""
+        """Return the change of moments [n, h, 3], N m, as the arms of loads with a history rotate
+        with their blocks; turn : R - 1 of each block [h, 3, 3]."""
         steady = self.shapes[[one is None for one in self.histories]].sum(axis=0)
         found = (self.resultants(steps, np.arange(len(self.rows))) - steady)[..., 3:]
         moved = turn @ found.reshape(*found.shape[:2], 3, 3)
