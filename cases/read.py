@@ -145,7 +145,8 @@ def _leaves(changes: dict[str, Any], base: Any, above: tuple[str, ...] = ()) -> 
 
 def _override(table: dict[str, Any], overrides: dict[str, Any], path: Path) -> None:
     for key, value in overrides.items():
-        _assign(table, key.split("."), value, key, path)
+        parts = re.sub(r"\[(\d+)\]", r".\1", key).split(".")  # soft_layers[0].y, as messages say
+        _assign(table, parts, value, key, path)
 
 
 def _assign(table: dict[str, Any], parts: Iterable[str], value: Any, key: str, path: Path) -> None:
@@ -166,6 +167,7 @@ def _place(at: Any, part: str, key: str, value: Any, path: Path) -> Any:
     if isinstance(at, dict):
         return part
     if not part.isdecimal() or int(part) >= len(at):
-        allowed = f"{part} must be the number of an entry of the list, 0 to {len(at) - 1}"
+        entries = f"0 to {len(at) - 1}" if at else "which is empty"
+        allowed = f"{part} must be the number of an entry of the list, {entries}"
         raise SceneError(str(path), key, value, allowed)
     return int(part)

@@ -54,7 +54,8 @@ def write_new(name: str, source: str | None = None, template: str = "pillar") ->
     given = find(source)
     scenes = load_variants(given)
     files = [pulse.file for one in scenes for pulse in one.pulses]
-    files += [getattr(one.numerics.continuum, "mesh", None) for one in scenes]
+    tables = [at for one in scenes for at in (one.numerics.continuum, getattr(one, "domain", None))]
+    files += [getattr(at, key, None) for at in tables for key in ("mesh", "blocks")]
     named = filter(None, files)
     places = {path: given, **{path.parent / file: given.parent / file for file in named}}
     for place in places:

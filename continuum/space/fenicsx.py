@@ -1,6 +1,7 @@
 """Import of PETSc, without its signal handlers, and then of dolfinx, with the root logger kept."""
 
 import logging
+import sys
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -12,8 +13,9 @@ import petsc4py
 petsc4py.init(["jointwave", "-no_signal_handler"])
 from petsc4py import PETSc  # noqa: E402
 
-root = logging.getLogger()
+root, given = logging.getLogger(), sys.argv
 handlers, level = list(root.handlers), root.level
+sys.argv = ["jointwave"]  # dolfinx takes options there, and fails at names that are no UTF-8
 import dolfinx.fem.petsc  # noqa: E402
 import dolfinx.graph  # noqa: E402
 import dolfinx.jit  # noqa: E402
@@ -21,6 +23,7 @@ from mpi4py import MPI  # noqa: E402
 
 root.handlers[:] = handlers
 root.setLevel(level)
+sys.argv = given
 
 __all__ = ["MPI", "PETSc", "dolfinx", "shared_by"]
 

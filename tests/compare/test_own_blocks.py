@@ -8,6 +8,7 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load
+from jointwave.compare.cli.scene_files import write_new
 from jointwave.compare.engines import solver
 from jointwave.compare.runs.checkpoint.signature import differences, signature
 
@@ -88,6 +89,14 @@ def test_a_run_of_blocks_of_a_file_is_of_that_file(scene, tmp_path):
     assert differences(one, signature(found, "dem", 1)) == []
     (tmp_path / "wall.obj").write_text(wall() + "\n# another")
     assert differences(one, signature(found, "dem", 1)) == ["scene"]
+
+
+def test_a_copy_of_a_scene_has_its_blocks(scene, tmp_path):
+    """`jointwave new --from` copies the file beside the scene, which runs there."""
+    scene()
+    path, blocks = write_new(str(tmp_path / "other" / "copy"), str(tmp_path / "scene.toml"))
+    assert blocks == path.parent / "wall.obj"
+    assert load(path)[0].domain.holes == []
 
 
 PRESSED = """

@@ -235,3 +235,11 @@ def test_a_mistake_is_one_line(changed, in_toml, good, changes, words):
     assert line.startswith("scene: ") and "\n" not in line and len(line) < 550
     for word in words.split(" ... "):
         assert word in line
+
+
+def test_an_entry_of_a_list_may_be_named_as_messages_name_it():
+    """`joint_sets[0].spacing` is `joint_sets.0.spacing`; a list without entries says so."""
+    for key in ("joint_sets[0].spacing", "joint_sets.0.spacing"):
+        assert load_tables(SPACE, "", {key: 0.5}).joint_sets[0].spacing == 0.5
+    with pytest.raises(SceneError, match="the list, which is empty"):
+        load_tables(SPACE | {"joint_sets": []}, "", {"joint_sets[0].spacing": 0.5})

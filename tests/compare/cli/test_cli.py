@@ -1,6 +1,7 @@
 """The command as a user meets it: its files, its messages, its exit status."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 import xarray as xr
 
 from jointwave.compare.cli.explain import explanation
+from jointwave.compare.cli.scene_files import starter
 
 SCENE = "guo-li-2002/fig-03"
 SHORT = ("--set", "time.duration=0.02")
@@ -49,6 +51,14 @@ def test_run_reports_the_same_as_json():
     (fact,) = json.loads(done.stdout)
     assert done.returncode == 0 and not done.stderr
     assert fact["engine"] == "dem" and fact["steps"] == 1200 and fact["energy_residual"] < 1e-10
+
+
+def test_a_file_may_have_a_name_that_is_no_text():
+    """Bytes that are no UTF-8, as of an old disk; dolfinx looks at the arguments of its process."""
+    name = os.fsdecode(b"caf\xe9.toml")
+    Path(name).write_text(starter("x.toml"))
+    done = subprocess.run((sys.executable, "-m", "jointwave", "explain", name), capture_output=True)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 def test_run_leaves_out_variants_that_an_engine_cannot_solve(jointwave):
