@@ -105,7 +105,8 @@ def figure(asked: Figure) -> None:
     folder, found = stored_in(asked), []
     if asked.dry:
         both = zip(scenes, wanted, strict=True)
-        planned = [run for one, of in both for run in runs_of(of, one, folder)]
+        every = (run for one, of in both for run in runs_of(of, one, folder))
+        planned = [run._replace(may_fail=True) for run in every]
         show_forecasts(planned, False, {"figures": len(scenes)})
         return
     for one, answers in zip(scenes, wanted, strict=True):

@@ -27,6 +27,7 @@ class Run(NamedTuple):
     point : of a sweep, or the part of a study or page; "" if none. times : number of repetitions.
     again : additional repetitions if the run is so short that its timing is repeated. is_read :
     whether a saved result is read instead. for_paraview : whether snapshots become files.
+    may_fail : whether the command continues without it, as it does if it has a point.
     """
 
     point: str
@@ -36,6 +37,7 @@ class Run(NamedTuple):
     again: int = 0
     is_read: bool = False
     for_paraview: bool = False
+    may_fail: bool = False
 
 
 def runs_of(
@@ -87,7 +89,7 @@ def forecasts(
     """Return the estimates of all runs that are not read, a row each, and why points would fail.
 
     spare : CPU seconds that may be spent on first steps of runs whose kind was never timed on this
-    machine. Raises SceneError for an impossible run without a point.
+    machine. Raises SceneError for an impossible run that may not fail.
     """
     found: list[Row] = []
     failing, kinds, began = {}, set(), process_time()
@@ -105,9 +107,10 @@ def forecasts(
                 kinds.add(kind)
             found.append(one)
         except SceneError as error:
-            if not run.point:
+            if not (run.point or run.may_fail):
                 raise
-            failing[run.point] = str(error)
+            where = run.point or f"{run.scene.name} {run.name}".strip()
+            failing[where] = "; ".join(filter(None, (failing.get(where), str(error))))
         progress((i + 1) / len(wanted))
     table = pd.DataFrame(found, columns=COLUMNS)
     return table.astype({"seconds": float}), failing

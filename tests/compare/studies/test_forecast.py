@@ -175,6 +175,12 @@ def test_what_would_fail_is_told(dry):
     assert "must be at least 0" in failing["message"]
     said = dry("run", SCENE, "--set", "numerics.dem.step_fraction=1.5", code=2).err
     assert said.count("\n") == 1 and "critical step" in said
+    coarse = (f"--set=numerics.{engine}.step_fraction=1.5" for engine in ("dem", "continuum"))
+    facts = json.loads(dry("compare", SCENE, "--variant", "", "--all", "--json", *coarse).out)
+    failing = {one["point"]: one["message"] for one in facts["failing"]}
+    assert set(failing) == {"dem", "continuum-jointed", "continuum-equivalent"}
+    assert all("critical step" in message for message in failing.values())
+    assert {run["scheme"] for run in facts["runs"]} == {"exact"}
 
 
 def test_the_least_of_runs_in_turns_counts_and_is_known(monkeypatch):
