@@ -115,7 +115,10 @@ def _write_stopped(job: Job, error: StoppedError) -> None:
 def _write(
     job: Job, saver: RunCheckpointer, result: xr.Dataset, seconds: float, part: float
 ) -> None:
-    """Write a result and save its cost, except of a continued run, which was timed in part."""
+    """Write a result and save its cost; of a continued run, timed in part, estimate it instead."""
+    if saver.done:
+        samples = result.sizes["time"]
+        result.attrs["seconds_stepping"] *= (samples - 1) / (samples - saver.done)
     write_dataset(job.path, signed(result, saver.signature, seconds))
     if saver.done:
         job.path.with_suffix(STOPPED).unlink(missing_ok=True)

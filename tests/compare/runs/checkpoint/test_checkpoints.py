@@ -2,6 +2,7 @@
 all that changes."""
 
 import signal
+from itertools import count
 
 import numpy as np
 import pytest
@@ -9,7 +10,11 @@ import pytest
 from jointwave.cases.errors import InterruptedRun, SceneError
 from jointwave.compare.engines import solve
 from jointwave.compare.runs.checkpoint.files import Checkpoints
+from jointwave.compare.runs.checkpoint.resume import CheckpointSettings
+from jointwave.compare.runs.checkpoint.signals import Signals
+from jointwave.compare.runs.jobs import Job
 from jointwave.compare.runs.processes import ALONE, Processes
+from jointwave.compare.runs.run import execute
 from jointwave.results.arrays import arrays, copied
 
 SIGNATURE = {"scene": "a", "engine": "dem", "number of processes": "1", "program": "1"}
@@ -167,3 +172,18 @@ def test_a_run_goes_on_to_the_same_bits(pillar, keeper_at, name):
     assert whole.data_vars.keys() == again.data_vars.keys()
     for key in whole.data_vars:
         assert whole[key].equals(again[key]), key
+
+
+def test_a_continued_run_has_the_cost_of_all_its_steps(pillar, tmp_path, monkeypatch):
+    """By a clock that moves at each look by a second, which each part of a run takes."""
+    monkeypatch.setattr("jointwave.dem.run.perf_counter", count().__next__)
+    stop, job = Signals(), Job(pillar(**SHORT), "dem", tmp_path / "dem.nc")
+    stop.asked = signal.SIGTERM
+    with pytest.raises(InterruptedRun):
+        execute([job], lambda fraction: None, settings=CheckpointSettings(60.0, False, stop))
+    ((_, _, samples, _),) = (path.stem.split("-") for path in tmp_path.glob(".dem.*"))
+    go_on = CheckpointSettings(60.0, True, Signals())
+    (done,) = execute([job], lambda fraction: None, settings=go_on)
+    # 41 samples, of which the first is the beginning.
+    assert done.facts["seconds_stepping"] == pytest.approx(40 / (41 - int(samples)))
+    assert 1 < int(samples) < 41
