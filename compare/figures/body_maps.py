@@ -124,7 +124,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
         i = int((values**2 @ found.sizes).argmax())
     else:
         i = int(np.abs(s.time - time).argmin())
-        if abs(s.time[i] - time) > (s.time[-1] - s.time[0]) / max(1, len(s.time) - 1):
+        if not abs(s.time[i] - time) <= (s.time[-1] - s.time[0]) / max(1, len(s.time) - 1):
             allowed = f"must be from {s.time[0]:g} to {s.time[-1]:g} s"
             raise SceneError(scene.title, "time", time, allowed)
     return found._replace(values=values[i], time=float(s.time[i]))

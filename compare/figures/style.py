@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from matplotlib import rc_params_from_file
 
+from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import names, solver
 from jointwave.compare.solvers.record import Line, thin
 from jointwave.results.labels import QUANTITIES, label
@@ -54,8 +55,12 @@ SIZE = RC["font.size"]  # points
 def printed(width: float, size: float) -> dict[Any, Any]:
     """Return matplotlib's settings for a printed figure, which needs no installed fonts.
 
-    width : of the figure, mm. size : of the font, points.
+    width : of the figure, mm. size : of the font, points. Raises SceneError if the legend has no
+    room.
     """
+    if width < (least := 5 * size):
+        allowed = f"must be at least {least:g} mm for a font of {size:g} pt"
+        raise SceneError("--width", f"{width:g}", None, allowed)
     return RC | {
         "figure.figsize": (width / 25.4, width / 25.4),
         "font.size": size,

@@ -56,6 +56,7 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder,
         (("--variant", "soft layer"), "are of a scene, not of a folder"),
         (("--map", "heat"), "map = 'heat': must be one of ppv, speed, stress, slip"),
         (("--map", "speed", "--time", "1"), "time = 1.0: must be from 0 to 0.01 s"),
+        (("--map", "speed", "--time", "nan"), "time = nan: must be from 0 to 0.01 s"),
     ):
         done = jointwave("picture", folder, *arguments, code=2)
         assert said in done.err and done.err.count("\n") == 1 and not done.out
