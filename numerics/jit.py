@@ -32,8 +32,11 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
     if flags is not None:
         function.__qualname__ += f".{sha256(repr(flags).encode()).hexdigest()[:8]}"
     numba.config.CACHE_DIR = str(DIRECTORY)
-    options = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-    kernel = numba.njit(**options)(function)
+    options = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    try:
+        kernel = numba.njit(cache=True, **options)(function)
+    except RuntimeError:  # neither our cache, nor numba's own, nor the sources can be written
+        kernel = numba.njit(**options)(function)
     known = set()
 
     @wraps(function)

@@ -59,6 +59,16 @@ def more(x):
     return x + 1.0
 
 
+def test_a_kernel_is_compiled_where_nothing_can_be_written(monkeypatch):
+    """A user without a home, beside sources of another's: nothing under /proc can be made."""
+    monkeypatch.setenv("HOME", "/proc/nobody")
+    monkeypatch.setattr(jit, "DIRECTORY", Path("/proc/nobody/cache"))
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    made = {}
+    exec(compile("def less(x): return x - 1.0", "/proc/nobody/less.py", "exec"), made)
+    assert jitted(made["less"])(2.0) == 1.0
+
+
 def test_one_process_at_a_time_compiles_a_function(tmp_path, monkeypatch):
     """While another holds its lock a kernel waits, and nothing enters the cache; then it does."""
     monkeypatch.setattr(jit, "DIRECTORY", tmp_path)
