@@ -50,8 +50,7 @@ def compare(asked: Compare) -> None:
     shows_all = asked.every or asked.as_json or asked.out is not None or bool(curves)
     if asked.dry:
         wanted = applicable if shows_all else deciding
-        every = (run for one in scenes for run in runs_of(wanted(one), one, folder))
-        runs = [run._replace(may_fail=True) for run in every]
+        runs = [run for one in scenes for run in runs_of(wanted(one), one, folder)]
         parts = {"distances": len(scenes) * shows_all, "tables": len(scenes) * bool(asked.out)}
         show_forecasts(runs, asked.as_json, parts)
         return

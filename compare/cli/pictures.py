@@ -105,8 +105,7 @@ def figure(asked: Figure) -> None:
     folder, found = stored_in(asked), []
     if asked.dry:
         both = zip(scenes, wanted, strict=True)
-        every = (run for one, of in both for run in runs_of(of, one, folder))
-        planned = [run._replace(may_fail=True) for run in every]
+        planned = [run for one, of in both for run in runs_of(of, one, folder)]
         show_forecasts(planned, False, {"figures": len(scenes)})
         return
     for one, answers in zip(scenes, wanted, strict=True):
@@ -180,7 +179,7 @@ def _simulated(asked: Animate | View, scene: AnyScene, frames: int | None = None
     if asked.dry:
         seen = scene if interval is None else snapshots.with_snapshots(scene, interval)
         engines, suffix = snapshots.shown_engines(seen), SNAPSHOTS * (interval is not None)
-        runs = runs_of(engines, seen, stored, suffix)
+        runs = [x._replace(may_fail=False) for x in runs_of(engines, seen, stored, suffix)]
         drawn = round(scene.time.duration / (seen.record.fields or inf)) + 1
         drawn *= isinstance(asked, Animate)
         show_forecasts(runs, False, {"figures": 1, "frames": drawn})

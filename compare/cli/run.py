@@ -46,7 +46,8 @@ def run(asked: Run) -> None:
 
         stored = ResultFolder(out, asked.fresh)
         found = [one for job in todo for one in runs_of([job.name], job.scene, stored)]
-        show_forecasts([one._replace(for_paraview=True) for one in found], asked.as_json)
+        found = [one._replace(for_paraview=True, may_fail=False) for one in found]
+        show_forecasts(found, asked.as_json)
         return
     processes = started()
     folders = {job.path.parent for job in todo}

@@ -44,8 +44,8 @@ def runs_of(
     names: Iterable[str], scene: AnyScene, stored: ResultFolder, suffix: str = "", point: str = ""
 ) -> list[Run]:
     """Return the runs of the solvers that apply; results in the folder `stored` are read."""
-    able = [name for name in names if applies(name, scene)]
-    return [Run(point, scene, name, is_read=stored.has(name, scene, suffix)) for name in able]
+    able = {name: stored.has(name, scene, suffix) for name in names if applies(name, scene)}
+    return [Run(point, scene, name, is_read=x, may_fail=True) for name, x in able.items()]
 
 
 #: Columns of an estimate. steps : exact number of time steps; 0 for exact solutions. size : blocks
@@ -92,7 +92,7 @@ def forecasts(
     machine. Raises SceneError for an impossible run that may not fail.
     """
     found: list[Row] = []
-    failing, kinds, began = {}, set(), process_time()
+    failing, kinds, began = dict[str, str](), set(), process_time()
     for i, run in enumerate(wanted):
         if run.is_read:
             continue
