@@ -56,6 +56,14 @@ def test_a_joint_alone_lies_on_a_line_of_squares_along_it(scene, dip):
     assert (contact_at(found, np.array([[1.0, 1.0]]), 1) == np.flatnonzero(mine)).any()
 
 
+@pytest.mark.parametrize("above", [0.8, 1.0, 1.3])
+def test_a_joint_near_a_quiet_side_makes_no_blocks_twice_as_large(scene, above):
+    """One block from the joint to a plane, half a block before the side, or that half alone."""
+    own = scene({"dip": 0.0, "through": [6.0, above]}, bottom="quiet")
+    spacing = further_sets(own)[0].spacing
+    assert spacing == pytest.approx(above / 1.5)
+
+
 def test_rock_with_a_poisson_effect_is_cut_in_triangles(scene):
     """Equilateral ones, of height h and area h^2 / sqrt(3), off the sides."""
     found = cut(scene({"dip": 30.0, "through": [6.0, 5.0]}, poisson=0.25))
