@@ -87,7 +87,7 @@ def all_of(errors: Iterable[SceneError]) -> SceneError:
     return SceneError(first.where, first.key, first.value, first.allowed, others)
 
 
-class _Found(reprlib.Repr):
+class _ShortRepr(reprlib.Repr):
     """Shortened values, spelled as in a scene file."""
 
     def __init__(self) -> None:
@@ -107,7 +107,7 @@ class _Found(reprlib.Repr):
     repr_date = repr_time = repr_datetime
 
 
-_short = _Found().repr
+_short = _ShortRepr().repr
 
 
 def printable(text: str) -> str:
@@ -116,10 +116,10 @@ def printable(text: str) -> str:
     Control and format characters (escape sequences, C1, DEL, direction marks) and unassigned ones
     are escaped as in Python; any white space becomes a space.
     """
-    return text if text.isprintable() else "".join(map(_spelled, text))
+    return text if text.isprintable() else "".join(map(_escaped, text))
 
 
-def _spelled(one: str) -> str:
+def _escaped(one: str) -> str:
     if one.isprintable():
         return one
     return " " if one.isspace() else one.encode("unicode_escape").decode()

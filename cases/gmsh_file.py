@@ -126,7 +126,7 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
     dim = next(block.dim for block in mesh.cells if block.type == name)
     everything = [block for block in mesh.cells if block.dim == dim]
     others = sum(len(block.data) for block in everything if block.type != name)
-    others += len(_each_once([b.data for b in everything if b.type == name])) - len(cells)
+    others += len(_distinct([b.data for b in everything if b.type == name])) - len(cells)
     if others:
         raise MeshError(f"{others} of its cells are in no group whose name starts with 'rock'")
     return KINDS[name], cells
@@ -135,10 +135,10 @@ def _rock(mesh, names: list[str]) -> tuple[str, np.ndarray]:
 def cells_of_type(mesh, names: list[str], cell: str) -> np.ndarray:
     """Return the distinct cells of one type in groups of these names, as vertex numbers."""
     found = [block.data[inside] for block, inside in _blocks(mesh, names) if block.type == cell]
-    return _each_once(found) if found else np.empty((0, 1), dtype=np.int64)
+    return _distinct(found) if found else np.empty((0, 1), dtype=np.int64)
 
 
-def _each_once(found: list[np.ndarray]) -> np.ndarray:
+def _distinct(found: list[np.ndarray]) -> np.ndarray:
     """Return distinct cells: format version 2 lists a cell once per group."""
     cells = np.concatenate(found).astype(np.int64)
     first = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)[1]

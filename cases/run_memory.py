@@ -22,7 +22,7 @@ COPIES = 2
 
 
 #: Collects the estimates inside `estimates`.
-_asked: ContextVar[dict[str, float] | None] = ContextVar("_asked", default=None)
+_collected: ContextVar[dict[str, float] | None] = ContextVar("_collected", default=None)
 
 
 @contextmanager
@@ -30,16 +30,16 @@ def estimates() -> Iterator[dict[str, float]]:
     """Collect the memory of the parts of a run (bytes, by the key that sets them) from the checks
     made in this context; of several checks of one key the largest."""
     parts: dict[str, float] = {}
-    token = _asked.set(parts)
+    token = _collected.set(parts)
     try:
         yield parts
     finally:
-        _asked.reset(token)
+        _collected.reset(token)
 
 
 def refuse_beyond_memory(scene: AnyScene, parts: Mapping[str, float]) -> None:
     """Raise SceneError if the parts of a run (bytes by the key that sets them) are too large."""
-    if (asked := _asked.get()) is not None:
+    if (asked := _collected.get()) is not None:
         asked.update({key: max(size, asked.get(key, 0.0)) for key, size in parts.items()})
     key = max(parts, key=lambda k: parts[k])
     if why := excess(sum(parts.values()), f", {spoken(parts[key])} of it for this"):

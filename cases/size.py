@@ -10,8 +10,8 @@ from pathlib import Path
 
 from jointwave.cases.errors import SceneError
 
-LIMIT = "JOINTWAVE_MEMORY"  # GB, in the environment: a bound of the user's own
-LARGEST_VARIABLE = 2**31 - 4  # bytes, of a NetCDF 3 file
+LIMIT = "JOINTWAVE_MEMORY"  # environment variable: the user's limit, GB
+LARGEST_VARIABLE = 2**31 - 4  # bytes, in a NetCDF 3 file
 #: Memory limits of control groups, versions 2 and 1.
 GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 

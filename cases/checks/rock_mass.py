@@ -18,7 +18,7 @@ from jointwave.cases.schema.pulse import PlaneLoad
 from jointwave.cases.schema.rock_mass import REST, RockMass
 from jointwave.cases.schema.tables import LEAN
 
-GRAZING = 1e-6  #: cosine below which a wave travels along a side or a joint
+GRAZING = 1e-6  #: cosine to the normal below which a wave travels along a side or joint
 PARTNER = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 PARTNER |= {"front": "back", "back": "front"}
 NEEDS = (("offset", "spacing"), ("scatter", "spacing"), ("offset", "ends_at"), ("seed", "scatter"))

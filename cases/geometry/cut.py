@@ -154,7 +154,7 @@ class _Work:
         low, high = self.codes[k - 1][part].T
         flat = (low == high) & (low % 2 == 1) & cross.holds(owner, low // 2)
         if k > 1 and flat.any():
-            raise self._grazing(k - 1, part[np.argmax(flat)])
+            raise self._grazing_error(k - 1, part[np.argmax(flat)])
         slab = cross.below(owner, (low + 1) // 2)
         rows[mine, 0] = np.where(slab == 0, owner, first + cross.index(owner, 0 * owner) + slab - 1)
         new = np.concatenate([np.stack([below, gained], axis=1), np.stack([above, gained], axis=1)])
@@ -204,9 +204,9 @@ class _Work:
             keys, count = counted(ends)
             wrong = keys[count != 2, 0]
         if len(wrong):
-            raise self._grazing(k, self.crossed[k][wrong[0], 0])
+            raise self._grazing_error(k, self.crossed[k][wrong[0], 0])
 
-    def _grazing(self, k: int, cell: int) -> Sliver:
+    def _grazing_error(self, k: int, cell: int) -> Sliver:
         """Return the Sliver error, located at the first vertex of a k-cell."""
         for level in range(k, 0, -1):
             cell = self.rows[level][np.searchsorted(self.rows[level][:, 0], cell), 1]

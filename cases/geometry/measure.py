@@ -13,7 +13,7 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import Complex, Halves
 from jointwave.cases.geometry.relations import composed, counted, distinct, sums
 
-LEVEL = 1e-9  # of a unit normal: a component below it is round-off
+LEVEL = 1e-9  # round-off in the components of a unit normal
 
 
 class Moments(NamedTuple):

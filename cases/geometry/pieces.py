@@ -138,12 +138,12 @@ def _joined(
     found, stuck = pieces.joined(thin, tolerance)
     for cell in stuck if found is None else ():
         near = [other for other in pieces.near(cell) if other not in thin]
-        if (found := _parted(body, cell, near, tolerance)) is not None:
+        if (found := _split(body, cell, near, tolerance)) is not None:
             break
     return found, (stuck or thin)[0]
 
 
-def _parted(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> Complex | None:
+def _split(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> Complex | None:
     """Return a complex with a sliver cut along a neighbour's face and one part merged with a
     neighbour, or None if no such cut leaves a part that fits."""
     alone, chosen = np.arange(body.count) == cell, np.isin(np.arange(body.count + 1), near)

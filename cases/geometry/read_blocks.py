@@ -62,7 +62,7 @@ def read_blocks(path: Path) -> Given:
         given = readers[path.suffix.lower()](path)
     except MeshError:
         raise
-    except Exception as error:  # of a broken file, of any kind
+    except Exception as error:  # a broken file raises errors of any kind
         raise MeshError(f"cannot be read as {path.suffix.lower()}: {one_line(error)}") from None
     if not given.blocks:
         raise MeshError("has no blocks")

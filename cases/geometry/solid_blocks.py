@@ -58,7 +58,7 @@ class Solid(NamedTuple):
                 continue
             if away.min() >= -tolerance:
                 return None, [x]
-            away[np.abs(away) <= tolerance] = 0.0  # on the line
+            away[np.abs(away) <= tolerance] = 0.0  # points on the line
             rest.append(clipped(inside, away))
             inside = clipped(inside, -away)
         return (inside, rest) if width_of(inside) > tolerance else (None, [x])
@@ -82,7 +82,7 @@ def solids_of(x: np.ndarray, blocks: list, names: list[str], tolerance: float) -
         points = x[np.unique([v for part in block for loop in part for v in loop])]
         try:
             hull = ConvexHull(points)
-        except (QhullError, ValueError):  # of points in a plane
+        except (QhullError, ValueError):  # the points lie in a plane
             hull = None
         if hull is None or hull.volume <= tolerance * hull.area:
             raise MeshError(f"{name} is flat{near(points)}")
@@ -148,7 +148,7 @@ def pieces_between(solids: list[Solid], names: list[str], tolerance: float) -> l
         one, other = solids[i], solids[j]
         above, beyond = (a.heights(b.corners).min(axis=0) for a, b in ((one, other), (other, one)))
         if max(above.max(), beyond.max()) < -tolerance:
-            _check_apart(one, other, f"{names[i]} and {names[j]}", tolerance)
+            _check_overlap(one, other, f"{names[i]} and {names[j]}", tolerance)
         above, beyond = (np.where(h <= tolerance, h, -np.inf) for h in (above, beyond))
         score = above[:, None] + beyond
         score[one.normals @ other.normals.T > AGAINST] = -np.inf
@@ -178,7 +178,7 @@ def _close(solids: list[Solid], tolerance: float) -> list[list[int]]:
     return pairs[:, close & (pairs[0] < pairs[1])].T.tolist()
 
 
-def _check_apart(one: Solid, other: Solid, names: str, tolerance: float) -> None:
+def _check_overlap(one: Solid, other: Solid, names: str, tolerance: float) -> None:
     """Raise MeshError if a ball larger than the tolerance fits into both blocks."""
     normals, places = (np.concatenate([one[k], other[k]]) for k in (2, 3))
     low, size = one.corners.min(axis=0), float(np.ptp(one.corners, axis=0).max())

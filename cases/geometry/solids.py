@@ -114,7 +114,7 @@ def cut_into_regions(
         one = regions[k]
         if isinstance(one, Solid):
             for face, normal in one.faces():
-                passed = _passed(body, body.region == ROCK, face, normal, tolerance)
+                passed = _cells_crossed(body, body.region == ROCK, face, normal, tolerance)
                 body = cut(body, one_plane(normal, face[0] @ normal, passed), tolerance).body
         else:
             plane = one_plane(one.normal, one.through @ one.normal, body.region == ROCK)
@@ -129,9 +129,9 @@ def taken_out(body: Complex, solids: Sequence[tuple[Solid, int]], tolerance: flo
     are cut along the face planes; parts of one rock are merged again as far as they stay convex."""
     whole = np.arange(body.count)  # the original block of each cell
     for solid, side in solids:
-        near = _near(body, body.halves(), solid.points(), tolerance)
+        near = _cells_near(body, body.halves(), solid.points(), tolerance)
         for face, normal in solid.faces():
-            passed = _passed(body, near, face, normal, tolerance)
+            passed = _cells_crossed(body, near, face, normal, tolerance)
             split = near & np.isin(whole, whole[passed])  # all cells of the block are cut
             found = cut(body, one_plane(normal, face[0] @ normal, split), tolerance)
             body, near, whole = found.body, near[found.parent], whole[found.parent]
@@ -165,21 +165,21 @@ def check_convex(body: Complex, solids: Sequence[tuple[Solid, int]]) -> None:
     )
 
 
-def _near(body: Complex, half: Halves, corners: np.ndarray, tolerance: float) -> np.ndarray:
+def _cells_near(body: Complex, half: Halves, corners: np.ndarray, tolerance: float) -> np.ndarray:
     """Return which cells' bounding boxes meet that of some points [n, d], bool array [count]."""
     low, high = body.extents(half, body.vertices)
     meets = (low <= corners.max(axis=0) + tolerance) & (high >= corners.min(axis=0) - tolerance)
     return meets.all(axis=1)
 
 
-def _passed(
+def _cells_crossed(
     body: Complex, cells: np.ndarray, face: np.ndarray, normal: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """Return which of some cells (bool array [count]) a convex face, float array [n, d], passes
     through by more than the tolerance (m)."""
     half = body.beside(cells)
     low, high = body.extents(half, (body.vertices - face[0]) @ normal)
-    crossed = (low < -tolerance) & (high > tolerance) & _near(body, half, face, tolerance)
+    crossed = (low < -tolerance) & (high > tolerance) & _cells_near(body, half, face, tolerance)
     half, found = body.beside(crossed), np.zeros(body.count, bool)
     place = body.places(half)
     for own in groups(half.cell):

@@ -188,7 +188,7 @@ def _planes(
             if rest is not None and reach > 0:
                 return _set(normal, _divided(reach, rest, block), through)
         return _set(normal, block, through)
-    if fixed:  # in another region
+    if fixed:  # the point is in another region
         return _planes(place, normal, block)
     if below is not None and above is not None:
         spacing = _divided(high - low, below + above, block)

@@ -99,7 +99,7 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
         raise SceneError(scene.where, key, spacing, f"{gives} {why}")
     try:
         found = blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
-        across_periodic(scene, found)  # whether its sides fit each other
+        across_periodic(scene, found)  # checks that periodic sides match
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
     return found

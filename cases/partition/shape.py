@@ -235,12 +235,12 @@ def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.n
     segment between them on one face; from one to the other along an open side; else, as around an
     opening, from the first to the second counter-clockwise."""
     lines, between = outline.edges(load.side, load.opening), np.array(load.between)
-    if (_off(lines, between) <= BESIDE * outline.size).all(axis=0).any():
+    if (_distances(lines, between) <= BESIDE * outline.size).all(axis=0).any():
         return [(between[0], between[1])]
     gaps = np.flatnonzero((lines[:, 0] != np.roll(lines[:, 1], 1, axis=0)).any(axis=1))
     if gaps.size:
         lines = np.roll(lines, -gaps[0], axis=0)
-    i, j = _off(lines, between).argmin(axis=1)
+    i, j = _distances(lines, between).argmin(axis=1)
     if gaps.size and j < i:
         i, j, between = j, i, between[::-1]
     found = lines[np.arange(i, j + 1 + (len(lines) if j < i else 0)) % len(lines)]
@@ -248,7 +248,7 @@ def loaded_lines(outline: Shape, load: PlaneLoad) -> list[tuple[np.ndarray, np.n
     return [(start, end) for start, end in found]
 
 
-def _off(lines: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _distances(lines: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the distances of points [m, 2] from lines, [m, n], m."""
     found = shapely.distance(shapely.linestrings(lines), shapely.points(points)[:, None])
     return np.asarray(found)

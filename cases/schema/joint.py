@@ -62,7 +62,7 @@ class Joints(JointLaw):
     point_rule: Literal["vertices", "midpoint", "gauss"] = "vertices"
 
     @model_validator(mode="after")
-    def _vertices_are_as_many_as_they_are(self) -> "Joints":
+    def _no_number_of_vertices(self) -> "Joints":
         if self.point_rule == "vertices" and self.contact_points is not None:
             allowed = "needs point_rule = 'midpoint' or 'gauss': vertices have no other number"
             raise contradiction(".contact_points", self.contact_points, allowed)
@@ -79,7 +79,7 @@ class SoftLayer(JointLaw):
 
     @model_validator(mode="before")
     @classmethod
-    def _points_are_alike(cls, table: Any) -> Any:
+    def _no_contact_points(cls, table: Any) -> Any:
         for key in OF_ALL_JOINTS:
             if isinstance(table, dict) and key in table:
                 allowed = f"applies to all joints: set joints.{key}"

@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 
 from jointwave.cases.schema.scene import Scene
 
-NOT_A_KEY = {"name"}  # of a scene: only [[variants]] have one
+NOT_A_KEY = {"name"}  # only [[variants]] have it
 
 #: The package that defines all models.
 CASES = __name__.rpartition(".schema.")[0]

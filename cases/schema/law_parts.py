@@ -74,7 +74,7 @@ def _needs_friction(key: str) -> Callable[[Any], tuple[str, str] | None]:
     return wrong
 
 
-def _lifts_too_far(law: JointLaw) -> tuple[str, str] | None:
+def _dilates_too_far(law: JointLaw) -> tuple[str, str] | None:
     """Check that dilation takes no more work than friction dissipates: both tangents are linear in
     the slip path, so the ends of the weakening decide."""
     if (found := _needs_friction("dilation_angle")(law)) is not None:
@@ -117,7 +117,7 @@ PARTS = (
         without={"dilation": 0.0, "dilation_distance": 1.0},
         words="a joint dilates as it slips",
         made={"dilation": lambda law: tangent(law.dilation_angle)},
-        wrong=_lifts_too_far,
+        wrong=_dilates_too_far,
     ),
     LawPart(
         "rate and state",

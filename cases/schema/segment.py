@@ -27,7 +27,7 @@ from jointwave.cases.schema.values import (
     contradiction,
 )
 
-CLOSE = 1e-6  # of a block: rounding of lengths
+CLOSE = 1e-6  # rounding of lengths, over the block thickness
 #: Keys that an intact segment cannot have.
 OF_JOINTED = (*SPEEDS, *CONSTANTS, "normal_stiffness", "damping_ratio")
 

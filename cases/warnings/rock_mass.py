@@ -83,7 +83,7 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
     for (i, one), (k, other) in combinations(plain, 2):
         normals = np.array([each.normal for each in (one, other)])
         if np.linalg.matrix_rank(normals, tol=PARALLEL) == 1:
-            places = (_places(scene, each, normals[1]) for each in (one, other))
+            places = (_joint_places(scene, each, normals[1]) for each in (one, other))
             apart = np.abs(np.subtract.outer(*places))
             if count := int((apart < COINCIDENT * scene.reach).any(axis=0).sum()):
                 yield (
@@ -99,11 +99,11 @@ def spelled(place: Sequence[float]) -> str:
 
 def _away(scene: RockMass, one: JointSet, points: np.ndarray) -> np.ndarray:
     """Return the distance of points [n, d] from the nearest joint of a set without scatter, m."""
-    apart = np.subtract.outer(points @ one.normal, _places(scene, one, one.normal))
+    apart = np.subtract.outer(points @ one.normal, _joint_places(scene, one, one.normal))
     return np.abs(apart).min(axis=1, initial=np.inf)
 
 
-def _places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
+def _joint_places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
     """Return the places of a set's joints along a normal, m, without scatter; joints along sides
     are left out unless the scene has periodic sides."""
     origin, across = normal @ one.origin, np.array(scene.domain.corners) @ normal

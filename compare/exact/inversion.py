@@ -116,15 +116,15 @@ def inverse(
     signal = pulse(window.times)[::skip]
     keep = slice(0, n * stride, stride)
     if causal:
-        return _level(transfer, signal, window, how, 0.5, 0, keep)
+        return _level_integral(transfer, signal, window, how, 0.5, 0, keep)
     bins = (
-        weight * _level(transfer, signal, window, how, node, SLOPE, keep)
+        weight * _level_integral(transfer, signal, window, how, node, SLOPE, keep)
         for node, weight in zip(*gauss(1.0, GAUSS), strict=True)
     )
-    return sum(bins) + _climb(transfer, signal, window, skip, keep)
+    return sum(bins) + _slope_integral(transfer, signal, window, skip, keep)
 
 
-def _level(
+def _level_integral(
     transfer, signal, window: Window, how: Accuracy, node: float, first: int, keep: slice
 ) -> np.ndarray:
     """Return the integral along the level path from bin `first` on, with one point per bin, up to
@@ -138,7 +138,7 @@ def _level(
     return window.motion(padded, node, keep)
 
 
-def _climb(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
+def _slope_integral(transfer, signal, window: Window, skip: int, keep: slice) -> np.ndarray:
     """Return the integral along the slope from 0 to the level path, at the fine steps `keep`."""
     nodes, weights = gauss(1.0, CLIMB)
     end = SLOPE * window.bin_width + 1j * window.decay

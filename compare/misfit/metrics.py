@@ -122,7 +122,7 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
     n = int(np.searchsorted(other["time"].values, until, side="right"))
     found = [(p, a[:n], b[:n]) for p, a, b in shared_waveforms(motion(one), motion(other))]
     changed = [max(rms(a), rms(b)) for place, a, b in found if place.quantity in UNITS[0]]
-    held = waveforms(static_state(other)) if _found_its_rest(other) else {}
+    held = waveforms(static_state(other)) if _has_static_state(other) else {}
     still = [abs(float(v[0])) for place, v in held.items() if place.quantity in UNITS[0]]
     if changed and max(changed) < EXCITED * max(still, default=0.0):
         return []
@@ -163,13 +163,13 @@ def static_state(result: xr.Dataset) -> xr.Dataset:
     or, in a rock mass, under prestress.
     """
     first = result[[name for name, of in result.items() if "time" in of.dims]].isel(time=[0])
-    if _found_its_rest(result):
+    if _has_static_state(result):
         return first
     stress = float(result.attrs.get("prestress", 0.0))
     return first.map(lambda of: xr.full_like(of, stress if of.name == "stress" else 0.0))
 
 
-def _found_its_rest(result: xr.Dataset) -> bool:
+def _has_static_state(result: xr.Dataset) -> bool:
     """Return whether a result starts from a computed static state, which has a tolerance."""
     starts, in_plane = result.attrs.get("starts"), result.attrs.get("kind") == "rock mass"
     return starts == "at rest under gravity" or (starts == "prestressed" and in_plane)

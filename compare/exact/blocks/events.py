@@ -103,9 +103,9 @@ class Motion:
         self.at_rest = system.initial[joints]
         self.closed, self.changed = self.at_rest >= 0, np.zeros(count, int)
         self.zero = np.zeros((2, count), dtype=bool)
-        self._release()
+        self._drop_open_joints()
 
-    def _release(self) -> None:
+    def _drop_open_joints(self) -> None:
         """Remove the forces of open joints from the equations of motion."""
         system, held = self.system, np.ones(len(self.system.initial))
         held[system.one_sided[~self.closed]] = 0.0
@@ -183,7 +183,7 @@ class Motion:
             least = LEAST if self.changed[i] > 1 else 0.0
             now = self.closed[i]
             crosses = (bounds[:, :, i].min(axis=1) < 0) & (bounds[:, :, i].max(axis=1) > 0)
-            found = _change_of(forces[:, :, i], crosses, now, least, best)
+            found = _first_change(forces[:, :, i], crosses, now, least, best)
             if found is not None and (found[0] < best or event is None):
                 best, event = found[0], (int(i), found[1])
         return best, event
@@ -199,10 +199,10 @@ class Motion:
             self.changed[i] += 1
             self.zero[kind, i] = True
             self.events += 1
-            self._release()
+            self._drop_open_joints()
 
 
-def _change_of(
+def _first_change(
     forces: np.ndarray, crosses: np.ndarray, closed: bool, least: float, up_to: float
 ) -> tuple[float, int] | None:
     """Return the first time before `up_to` at which a joint changes, and the force that causes it

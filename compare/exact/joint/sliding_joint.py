@@ -33,9 +33,9 @@ from jointwave.compare.exact.linear import bound
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
-WORN = ("weakening", "dilation", "rate and state")
-RATED = next(part.without for part in PARTS if part.name == WORN[-1])
-HELD = ("spatial motion", "prestress", "fixed start", *WORN, *LAYERS)
+PATH_DEPENDENT = ("weakening", "dilation", "rate and state")
+RATE_PARAMETERS = next(part.without for part in PARTS if part.name == PATH_DEPENDENT[-1])
+HELD = ("spatial motion", "prestress", "fixed start", *PATH_DEPENDENT, *LAYERS)
 ROUND_OFF = 1e-11  # tolerance of roots, over the largest waveform
 
 
@@ -91,7 +91,7 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
     joint, Z, axis = the_joint(scene, p), p.shear_impedance, np.array(scene.load.direction)[:, None]
     passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
-        own = (float(getattr(p, name)[_slips(p)][0]) for name in ("friction", *RATED))
+        own = (float(getattr(p, name)[_slips(p)][0]) for name in ("friction", *RATE_PARAMETERS))
         rated = rate_state_joint.RateJoint(static_stress(scene), *own)
         rated = rated._replace(compliance=joint.compliance)
         rest, tolerance = joint.y / p.shear_speed, rate_state_joint.TOLERANCES[which]

@@ -63,7 +63,7 @@ def medium_field(scene: RockMass) -> MediumField:
     all joint sets must have a spacing."""
     C, face = medium_stiffness(scene), None if scene.in_space else free_face(scene)
     waves = [medium_wave(scene, one, C) for one in scene.waves]
-    back = [] if face is None else [x for one in waves for x in _sent_back(one, C, scene, face)]
+    back = [] if face is None else [x for one in waves for x in _reflections(one, C, scene, face)]
     return MediumField((*waves, *back))
 
 
@@ -96,7 +96,7 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     return MediumWave(elastic_rock(scene.rock), n, g, c, through, pulse, -in_components(full))
 
 
-def _sent_back(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:
+def _reflections(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:
     """Return the reflections of a wave from a free face of a medium of stiffness C: the waves with
     slownesses p t + q m, with the incident p along the face, that travel away from it and cancel
     the traction on it; waves that decay from the face are left out."""

@@ -137,9 +137,9 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
     left = [one for one in scene.joint_sets if one.name not in kept]
     smeared = all(one.spacing for one in left) and not planes.regions and not kept
     if smeared and left:
-        yield _left_on_face(scene), "a wave decays from the free side"
+        yield _face_motion(scene), "a wave decays from the free side"
     for one in left:
-        back = _sent_back(scene, one)
+        back = _reflected_part(scene, one)
         if smeared:
             yield 1 - float(np.sqrt(1 - back**2)), f"joint set {one.name!r} is not smeared"
         else:
@@ -151,7 +151,7 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
     yield from _beyond_strength(scene)
 
 
-def _sent_back(scene: RockMass, one: JointSet) -> float:
+def _reflected_part(scene: RockMass, one: JointSet) -> float:
     """Return the largest part of a wave reflected by a joint of a set at its dominant frequency, at
     normal incidence: x / sqrt(1 + x^2), x = omega Z / 2 K."""
     most = 0.0
@@ -164,7 +164,7 @@ def _sent_back(scene: RockMass, one: JointSet) -> float:
     return most
 
 
-def _left_on_face(scene: RockMass) -> float:
+def _face_motion(scene: RockMass) -> float:
     """Return the motion caused by the traction that the waves of a medium leave on a free side,
     over the velocity of the wave."""
     face, most = free_face(scene), 0.0
@@ -173,7 +173,7 @@ def _left_on_face(scene: RockMass) -> float:
     for one in scene.waves:
         waves = medium_field(scene.model_copy(update={"waves": [one]})).waves
         left = on_face(np.sum([x.unit_stress() for x in waves], axis=0)[None, :, None], face.normal)
-        most = max(most, float(np.linalg.norm(left)) * _moved(waves[0], face.normal))
+        most = max(most, float(np.linalg.norm(left)) * _largest_velocity(waves[0], face.normal))
     return most
 
 
@@ -211,7 +211,7 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
     stress = still[:, :, None] - field(places, times).stress
     for one in sets:
         n = one.normal
-        moves, traction = max(_moved(wave, n) for wave in waves), on_face(stress, n)
+        moves, traction = max(_largest_velocity(wave, n) for wave in waves), on_face(stress, n)
         pressed = np.einsum("i,min->mn", n, traction)
         shear = np.linalg.norm(traction - pressed[:, None] * n[:, None], axis=1)
         for excess, does in zip(_excess(one, pressed, shear), ("opens", "slips"), strict=True):
@@ -219,11 +219,11 @@ def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
         if one.maximum_closure is not None and one.normal_stiffness:
             begins = one.normal_stiffness * one.maximum_closure + max(pressed.min(), 0.0)
             closes = np.ptp(pressed) / begins
-            part = _sent_back(scene, one) * float(closes / (1 + closes))
+            part = _reflected_part(scene, one) * float(closes / (1 + closes))
             yield part, f"joint set {one.name!r} stiffens"
 
 
-def _moved(wave: PlaneWave, normal: np.ndarray) -> float:
+def _largest_velocity(wave: PlaneWave, normal: np.ndarray) -> float:
     """Return the largest velocity caused by a traction on a joint, m/s/Pa: the largest singular
     value of V A^-1, V and A the velocities and tractions of unit P and SV waves with the wave's
     slowness along the joint; in space at least that of SH waves, 1 / (Z_s cos phi)."""

@@ -40,7 +40,7 @@ DISTANCES = {
         "continuum-equivalent": "joints smeared over the rock",
     },
 }
-BESIDE = 1e-13  #: distance from a joint that counts as off it, over the domain's size
+OFFSET = 1e-13  #: distance from a joint that counts as off it, over the domain's size
 
 
 #: Function of (scene, stack, places [m, d] (m), times (s)).
@@ -69,7 +69,7 @@ def solve(scene: RockMass, name: str, motion: Motion | None = None) -> xr.Datase
     stack, times, frame = stack_of(scene), sample_times(scene), frame_of(scene)
     joints = joint_receivers(scene, stack)
     points, on_joint, beyond = point_receivers(scene, stack)
-    beside = _beside(stack) * frame[0]
+    beside = _joint_offset(stack) * frame[0]
     places = [points, beyond, joints - beside, joints + beside]
     found = (motion or motion_at)(scene, stack, np.concatenate(places), times)
     ends = np.cumsum([len(part) for part in places])[:-1]
@@ -138,8 +138,8 @@ def point_receivers(
     apart = np.take_along_axis(apart, np.abs(apart).argmin(axis=1)[:, None], axis=1)
     sides = sides_at(stack.blocks, points, len(scene.joint_sets))
     inward = stack.blocks.centroid[[min(blocks, default=OUTSIDE) for blocks in sides]] - points
-    side = _beside(stack) * np.sign(inward @ stack.normal)[:, None]
-    near = np.abs(apart) <= TOLERANCE / BESIDE * _beside(stack)
+    side = _joint_offset(stack) * np.sign(inward @ stack.normal)[:, None]
+    near = np.abs(apart) <= TOLERANCE / OFFSET * _joint_offset(stack)
     here, there = (points + (off - apart) * stack.normal for off in (side, -side))
     on_joint = near[:, 0] & np.array([len(blocks) > 1 for blocks in sides])
     return np.where(near, here, points), on_joint, there[on_joint]
@@ -171,9 +171,9 @@ def on_face(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return np.einsum("mijn,j->min", stress[:, COMPONENT[len(normal)]], normal)
 
 
-def _beside(stack: JointStack) -> float:
+def _joint_offset(stack: JointStack) -> float:
     """Return the offset from a joint of places beside it, m."""
-    return BESIDE * float(np.linalg.norm(np.ptp(stack.blocks.body.vertices, axis=0)))
+    return OFFSET * float(np.linalg.norm(np.ptp(stack.blocks.body.vertices, axis=0)))
 
 
 def _solver(name: str, label: str, line: Line, one: bool) -> Solver:
