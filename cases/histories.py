@@ -200,8 +200,8 @@ class Recorded(LoadHistory):
     """A piecewise linear history, zero outside its samples: a record, or a triangle.
 
     `stress` is [n] Pa at `time` [n] s; `timed` : whether a file gives the unit of its times.
-    Integrals are exact, so a step of any length takes the true mean, without undersampling. The
-    rate at a sample is the slope before it.
+    Integrals are exact: a step of any length takes the true mean. The rate at a sample is the slope
+    before it.
     """
 
     time: np.ndarray

@@ -117,9 +117,9 @@ def free_field(scene: RockMass) -> FreeField:
 def plane_wave(scene: RockMass, wave: Wave) -> PlaneWave:
     """Return a wave of a scene in the rock at the domain's corner that it meets first.
 
-    Particles of an S wave move to the left of its direction, in space along the part of its
-    `polarisation` normal to it. The stress on the wave front, -sigma_nn of P and -sigma_ns of S, is
-    impedance times velocity.
+    Particles of an S wave move to the left of its direction, in space along its `polarisation`'s
+    part normal to it. Stress on the front, -sigma_nn of P and -sigma_ns of S, is impedance times
+    velocity.
     """
     n, corners = np.array(wave.direction), np.array(scene.domain.corners)
     first = corners[np.argmin(corners @ n)]

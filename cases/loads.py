@@ -35,9 +35,9 @@ BINS, PADDING, MOST_CYCLES = 4096, 8, 32
 def load_history(scene: Scene) -> LoadHistory:
     """Return the scene's load as a function of time: the end stress or the motion of the base.
 
-    Stress is positive in compression. For a wave that enters an absorbing start (compliant base),
-    it is twice the wave's stress, 2 rho c v: the dashpot takes half, and half enters (Mejia &
-    Dawson, 4th FLAC Symposium, 2006).
+    Stress is positive in compression. A wave that enters an absorbing start (compliant base) loads
+    it by twice its stress, 2 rho c v: the dashpot takes half (Mejia & Dawson, 4th FLAC Symposium,
+    2006).
     """
     load, amplitude = scene.load, scene.load.amplitude
     if not load.is_motion or scene.shakes_base:
@@ -114,8 +114,7 @@ def with_load_itself(
 
 
 def with_walls(waves: dict[str, Any], scene: Scene, times: np.ndarray) -> dict[str, Any]:
-    """Return waveforms of rigid blocks, made linear from the middle of an end block to a fixed
-    wall.
+    """Return waveforms of rigid blocks, linear from the middle of an end block to a fixed wall.
 
     waves : velocity, displacement and rotation [receiver, n], or along the axes [receiver, n, 3];
     beyond the middles of the end blocks they are those of the blocks.
@@ -137,7 +136,7 @@ def with_walls(waves: dict[str, Any], scene: Scene, times: np.ndarray) -> dict[s
 
 
 def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
-    """Return the displacement of a shaken base in each step [n dt, (n + 1) dt], n = 0 .. count - 1,
+    """Return the displacement of a shaken base in each step [n dt, (n + 1) dt], n = 0 to count - 1,
     m.
 
     A velocity history is integrated exactly over the step. An acceleration history gives, as
@@ -152,8 +151,7 @@ def base_steps(pulse: Pulse, dt: float, count: int) -> np.ndarray:
 class ShortestWave(NamedTuple):
     """The slowest wave that a load drives, at the load's highest frequency.
 
-    frequency : Hz. speed : m/s. blocks : per wavelength. cut_off : Hz, above which a row of rigid
-    blocks transmits nothing.
+    frequency : Hz. speed : m/s. blocks : per wavelength. cut_off : Hz, of a row of rigid blocks.
     """
 
     frequency: float

@@ -83,8 +83,7 @@ def read_columns(
 
     time_name : header of the times; "time" also accepts "t", or the first of two columns. least :
     number of samples. gaps : whether cells may be empty. begins : whether a seismogram begins at
-    its own clock's time, else at t = 0. Raises ValueError, in one phrase with line, value and what
-    is allowed.
+    its own clock's time, else at t = 0. Raises ValueError, in one phrase with line and value.
     """
     content = read_bytes(path, LARGEST_FILE, SPREAD)
     where: Where

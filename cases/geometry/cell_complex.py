@@ -33,11 +33,9 @@ class Sliver(GeometryError):
 
 
 class Halves(NamedTuple):
-    """Facets listed once for each cell that they bound (half-facets): int arrays [h].
-
-    facet, cell : indices. across : cell on the other side, or OUTSIDE. outward : float array [h,
-    d], unit normal out of the cell.
-    """
+    """Half-facets: facets listed once for each cell that they bound, int arrays [h]. facet, cell :
+    indices. across : cell on the other side, or OUTSIDE. outward : unit normal out of the cell [h,
+    d]."""
 
     facet: np.ndarray
     cell: np.ndarray
@@ -205,8 +203,7 @@ def from_facets(
 ) -> Complex:
     """Return the complex of facets given as loops of vertices in order.
 
-    x : float array [v, d], m. sides : int array [n, 2], the cells that the unit normals [n, d] of
-    facets point out of and into.
+    x : float array [v, d], m. sides : int array [n, 2], cells that normals [n, d] leave and enter.
     """
     turned = (normal @ GENERIC[: x.shape[1]] < 0)[:, None]
     normals, plane = np.unique(

@@ -50,9 +50,8 @@ def cell_moments(
 
     half : half-facets, all where absent. facets : moments of each half-facet.
 
-    A cone of height h over a facet of size A, with f from its apex to the facet's centroid and S
-    the facet's second moment, has A h / d, A h f / (d + 1) and h (S + A f f) / (d + 2) about its
-    apex.
+    A cone of height h over a facet of size A, f from its apex to the facet's centroid, S the
+    facet's second moment, has A h / d, A h f / (d + 1) and h (S + A f f) / (d + 2) about its apex.
     """
     half = half or body.halves()
     facets = facets or facet_moments(body, half.facet)

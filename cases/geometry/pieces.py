@@ -100,9 +100,8 @@ def without_slivers(
     """Return a complex without blocks thinner (m) or more pointed (degrees) than the limits.
 
     joins : merge each sliver with the neighbour across its largest face that makes a convex union,
-    or cut it along a neighbour's face and merge part by part; otherwise refuse slivers. kept :
-    number of leading joint sets that a sliver merges across only as a last choice. Raises Sliver
-    where slivers are refused or nothing fits.
+    or cut it along a neighbour's face and merge part by part. kept : number of leading joint sets
+    that slivers merge across only as a last choice. Raises Sliver for slivers that are left.
     """
     most = 0
     while True:

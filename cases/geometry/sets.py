@@ -141,8 +141,7 @@ def _shifts(one: PlaneSet, stops: Stops, parts: np.ndarray, sets: Sequence[Plane
 def places_between(
     one: PlaneSet, part: np.ndarray, origin: float, low: float, high: float
 ) -> tuple[np.ndarray, int]:
-    """Return the places of planes from below `low` to above `high`, m, and the signed number of the
-    first.
+    """Return the places of planes from below `low` to above `high`, m, and the number of the first.
 
     Scattered spacings are uniformly distributed about their mean. Each part, above and below its
     origin, has its own random stream, so that places do not depend on the domain's size.

@@ -34,8 +34,8 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
     """Return the closure of a joint of JRC `roughness` and JCS `wall_strength` (Pa), in rock of
     uniaxial compressive strength sigma_c `rock_strength` (Pa).
 
-    Raises ValueError outside measured ranges: JRC 5 to 15, JCS 22 to 182 MPa and at most sigma_c,
-    aperture 0.1 to 0.6 mm.
+    Raises ValueError outside measured JRC 5 to 15, JCS 22 to 182 MPa (at most sigma_c), 0.1 to 0.6
+    mm.
     """
     jcs, sigma_c = wall_strength / 1e6, rock_strength / 1e6
     a = roughness / 5 * (0.2 * sigma_c / jcs - 0.1)

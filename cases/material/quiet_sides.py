@@ -93,9 +93,7 @@ def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]
 
 
 def base_traction(impedance: np.ndarray, direction: list[float]) -> np.ndarray:
-    """Return the traction [m, d] on a compliant base per m/s of the incoming wave, Pa s/m.
-
-    It is twice that of the dashpots [m, d, d], which take half; the other half enters (Mejia &
-    Dawson, 4th FLAC Symposium, 2006).
-    """
+    """Return the traction [m, d] on a compliant base per m/s of the incoming wave, Pa s/m: twice
+    that of the dashpots [m, d, d], which take half of it (Mejia & Dawson, 4th FLAC Symposium,
+    2006)."""
     return 2 * impedance @ np.array(direction)

@@ -16,8 +16,7 @@ LAYERS = ("thick layers", "soft layers", "stiff layers")
 def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> Answer:
     """Return whether a solution applies to a scene, or the first reason why not.
 
-    held : physics that the solution covers, by the names below. against : other conditions that
-    exclude it, with reasons.
+    held : physics that the solution covers, by the names below. against : other reasons against it.
     """
     p, laws = calibrate(scene), (scene.joints, *scene.layers)
     physics = {part.name: (any(map(part.of, laws)), part.words) for part in PARTS} | {

@@ -106,8 +106,7 @@ def inverse(
     """Return (1/pi) int F H e^{-i omega t} d omega [..., n] at `times` (s, equally spaced); its
     real part is u.
 
-    transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, zero before the first of the
-    times; no arrival precedes it.
+    transfer : H [..., k] at complex omega [k] (rad/s). pulse : f, zero before the first time.
     """
     n, skip = len(times), how.skip
     stride = -(-STEPS // n)

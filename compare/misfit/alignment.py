@@ -34,8 +34,7 @@ Results = dict[str, xr.Dataset]
 class Shift(NamedTuple):
     """The shift added to a curve's times, s, the solution that it then fits, and how well.
 
-    onto : "" without correlation: no shift. correlation : normalised over the overlap, 1 for equal
-    shapes.
+    onto : "" without correlation: no shift. correlation : normalised, 1 for equal shapes.
     """
 
     seconds: float = 0.0

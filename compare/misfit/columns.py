@@ -51,8 +51,7 @@ def _is_label(text: str) -> bool:
 def read_table(times: Selection, least: int, gaps: bool = True) -> Columns:
     """Return the columns of a file; a selection of its times may give their unit.
 
-    times : selection of the times, or one that selects no times. least, gaps : see `read_columns`.
-    Raises ValueError, in one phrase.
+    times : selection of the times, or of none. least, gaps : see `read_columns`. Raises ValueError.
     """
     if is_netcdf(times.path):
         found = read_netcdf(times.path, least)

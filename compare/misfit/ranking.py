@@ -31,8 +31,7 @@ NOT_CHECKED = "not checked independently"
 def lacks(name: str, scene: AnyScene) -> str:
     """Return the effect of a scene that an applicable solution leaves out, "" if none.
 
-    Rigid blocks model a soft layer's thickness as a joint; a bar has no lateral inertia of a column
-    in two or three dimensions.
+    Rigid blocks model a soft layer's thickness as a joint; bars have no lateral inertia.
     """
     of = solver(name)
     if not scene.is_column:

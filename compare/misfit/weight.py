@@ -31,8 +31,7 @@ class Weight(NamedTuple):
     norm : root mean square of the reference's component, if it carries at least 5 % of the motion;
     else of all motion there; at a receiver below 1 % of the loudest one, of the loudest. least :
     misfit from which the waveform decides: 0 if it carries, else CARRIES or FAINT; inf if a whole
-    unit is at rest in the reference while another moves. excited : whether the reference moves
-    there at all.
+    unit rests in the reference while another moves. excited : whether the reference moves there.
     """
 
     norm: np.ndarray

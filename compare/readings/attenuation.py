@@ -22,8 +22,8 @@ def waveforms(
     """Return one component of a quantity minus its static state [receiver, time], with the
     `distance` (m) and the offsets along the axes from the first receiver, NaN if unknown.
 
-    result : a result or a recording, see `recording`. axis : component, "x", "y", "xy" ...; None:
-    the one with the largest motion.
+    result : see `recording`. axis : component, "x", "y", "xy" ...; None: that of the largest
+    motion.
     """
     result = recording(result, quantity)
     if quantity not in result:

@@ -25,10 +25,9 @@ SEEN = 0.01  # of its peak, the threshold for a wavelet's length
 
 class EnteringWave(NamedTuple):
     """A plane wave as it enters: source, peak stress (Pa) and particle velocity (m/s), length of
-    the pulse (m; None for a step) and energy per area of the front (J/m2).
+    the pulse (m; None for a step) and energy per area of the front (J/m2), up to the scene's end.
 
-    A wavelet's length is where it exceeds a hundredth of its peak. Lasting pulses are cut at the
-    scene's end.
+    A wavelet's length is where it exceeds a hundredth of its peak.
     """
 
     source: str

@@ -102,8 +102,7 @@ class Line(NamedTuple):
 def thin(colour: str, order: int, slot: tuple[float, float]) -> Line:
     """Return the line of an exact solution: thin and dashed, above those of the engines.
 
-    slot : the part of each dash period that it fills, so that dashes of coinciding solutions
-    alternate.
+    slot : its part of each dash period, so that dashes of coinciding solutions alternate.
     """
     first, last = slot
     return Line(colour, 1.1, order, (PERIOD - first, (last - first, PERIOD - (last - first))))

@@ -127,8 +127,7 @@ def transmitted(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return sigma_T (Pa) and its impulse (Pa s) at the joint for the incident stress `load`.
 
-    times : [n], or rows of times, equally spaced from before the load begins. which : 1 for the
-    twin (`linear.twins`).
+    times : equally spaced from before the load begins, [n] or rows. which : 1 for the twin.
     """
     tau = joint.time_constant + impedance / (2 * joint.stiffness)
     share = joint.time_constant / tau

@@ -78,8 +78,8 @@ def _exp(x: float) -> float:
 class RateStateWave:
     """sigma_T (Pa) and its impulse (Pa s) at any time up to `end` (s), under the incident `load`.
 
-    impedance : Z, Pa s/m. tolerance : of each integration step, relative. rest : time of stationary
-    contact before t = 0, s.
+    impedance : Z, Pa s/m. tolerance : relative, of a step. rest : stationary contact before t = 0,
+    s.
     """
 
     def __init__(

@@ -108,8 +108,7 @@ def layers(
 class PulseStack(NamedTuple):
     """Joints in the order in which a pulse meets them.
 
-    rocks : of the layers [N + 1]; if they differ, no wave may be evanescent. joints : [N]. depths :
-    along n, ascending, m, [N].
+    rocks : of the layers [N + 1], equal if a wave is evanescent. joints, depths (along n, m) : [N].
     """
 
     axes: Axes

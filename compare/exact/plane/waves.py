@@ -89,8 +89,7 @@ def axes_of(
     """Return the axes of joints with a unit normal [d] for waves with a direction [d] that is not
     along the joints.
 
-    polarisation : of an S wave in space [3]; the incident amplitude is its part along the motion of
-    the given kind.
+    polarisation : of an S wave in space [3]; the part along the given kind's motion is incident.
     """
     direction = np.asarray(direction) / np.linalg.norm(direction)
     n = np.asarray(normal) * (1.0 if direction @ normal > 0 else -1.0)

@@ -31,8 +31,7 @@ def holds(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) ->
     """Return whether a solution for linear joints in undamped rock applies to a scene, or the first
     reason why not.
 
-    held : physics that it covers, by the names below. against : other conditions that exclude it,
-    with reasons.
+    held : physics that it covers, by the names below. against : other reasons against it.
     """
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
     damped = any(one.damping_ratio for one in scene.joint_sets)

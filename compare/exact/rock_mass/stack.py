@@ -168,8 +168,7 @@ def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     """Return the first arrival of a reflected or transmitted wave in the domain, s.
 
     With the slownesses p along the joints and q across them, and the first joint's depth d, it is p
-    x + q d + min(q_p, q_s) |z - d|. An evanescent wave has no arrival time; it counts from the
-    joint that generates it.
+    x + q d + min(q_p, q_s) |z - d|. Evanescent waves count from the joint that generates them.
     """
     n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
     across = float(wave.direction @ n)
