@@ -145,7 +145,7 @@ def _leaves(changes: dict[str, Any], base: Any, above: tuple[str, ...] = ()) -> 
 
 def _override(table: dict[str, Any], overrides: dict[str, Any], path: Path) -> None:
     for key, value in overrides.items():
-        parts = re.sub(r"\[(\d+)\]", r".\1", key).split(".")  # soft_layers[0].y, as messages say
+        parts = re.sub(r"\[(\d+)\]", r".\1", key).split(".")  # soft_layers[0].y, as in messages
         _assign(table, parts, value, key, path)
 
 

@@ -23,7 +23,7 @@ from jointwave.cases.schema.rock_mass import REST, RockMass
 
 #: Blocks from a side to the nearest plane, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
-MOST = 1.5  #: of the size asked for, as blocks of a spacing divided by the nearest whole number
+MOST = 1.5  #: largest block over the requested size, as where a spacing is divided by rounding
 ALIKE = 1e-11  #: sine of the angle below which directions are equal
 ACROSS = 3**0.5 / 2
 #: For 2 or 3 directions in which rock is cut: the planes besides those across the first one, as
