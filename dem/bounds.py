@@ -76,7 +76,8 @@ def moved_apart(system: BlockSystem, state: State) -> Moved | None:
     else:
         reach = np.sqrt(3 * np.trace(met.spread, axis1=1, axis2=2))  # to a rectangle's corners
         ends = reach * np.linalg.norm(moved[:, dim:], axis=1)
-        by = np.hypot(np.abs(moved[:, 0]) + ends, by)
+        held = system.blocks.columns.shear[met.column] > 0  # rollers let blocks slide
+        by = np.hypot(np.abs(moved[:, 0]) + ends, by * held)
         size = np.append(blocks.size, np.full(len(met.walls), np.inf))[met.blocks].min(axis=1)
     return farthest(met.blocks, by, size, place, count)
 

@@ -130,9 +130,7 @@ def mass_factors(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np
     inner = j < count
     graph = coo_array((np.ones(inner.sum()), (i[inner], j[inner])), shape=(count, count))
     group = connected_components(graph, directed=False)[1]
-    holding = columns.normal if contacts.frame.shape[1] == 1 else columns.shear
-    walls = ~inner & (holding[contacts.column] > 0.0)
-    held = np.isin(group, group[i[walls]])
+    held = np.isin(group, group[i[~inner]])
     if held.any():
         squared = squared_frequencies(contacts, columns, masses)
         np.divide(squared, squared.max(), out=found, where=held & (squared > 0.0))
