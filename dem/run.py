@@ -128,8 +128,8 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
     size = min(max(1, MOST_OF_DRIVE // max(1, width)), time.stride * time.samples)
     drive, shake, shaking = None, None, system.shaking
     turns = model.held is not None and model.form.finite and system.blocks.scene.load.arm is None
-    if turns:  # a divisor of the stride: results do not depend on the chunks, bit for bit
-        size = max(n for n in range(1, TURNED_FOR + 1) if time.stride % n == 0)
+    if turns:
+        size = min(size, TURNED_FOR)
     if model.held is not None:
         drive = np.zeros((stages * size, len(loads.rows), model.form.freedoms))
     if shaking is not None:
@@ -137,8 +137,15 @@ def stepper(system: BlockSystem, state: State, samples: Samples) -> Callable[[in
     take = make_stepper(model, state, samples, size, drive, shake, system.threads)
 
     def advance(first: int, last: int) -> None:
-        for begin in range(first, max(last, first + 1), size):
-            steps = np.arange(begin, min(begin + size, last))
+        # Arms turn at each sample and so many steps after it: the same in any chunks, bit for bit.
+        every = time.stride if turns else max(last - first, 1)
+        pieces = [
+            (at + k, at + every)
+            for at in range(first, max(last, first + 1), every)
+            for k in range(0, every, size)
+        ]
+        for begin, end in pieces:
+            steps = np.arange(begin, min(begin + size, end, last))
             if drive is not None:
                 drive[: stages * len(steps)] = loads.drive(steps)
             if drive is not None and turns:
