@@ -8,7 +8,7 @@ which moves like the lattice there; other sides lie at a plane. Each region of r
 lattice and a plane along its boundary. Rock no wider than the size is not cut.
 """
 
-from math import inf
+from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +23,6 @@ from jointwave.cases.schema.rock_mass import REST, RockMass
 
 #: Blocks from a side to the nearest plane, by the side's boundary condition.
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
-MOST = 1.5  #: largest block over the requested size, as where a spacing is divided by rounding
 ALIKE = 1e-11  #: sine of the angle below which directions are equal
 ACROSS = 3**0.5 / 2
 #: For 2 or 3 directions in which rock is cut: the planes besides those across the first one, as
@@ -201,7 +200,6 @@ def _planes(
 
 def _divided(reach: float, rest: float, block: float) -> float:
     """Return the spacing near `block` that divides a reach (m) into whole blocks plus `rest`."""
-    whole = max(round(reach / block - rest), 0)
-    if reach > MOST * block * (whole + rest) > 0:
-        whole += 1
+    least = ceil(reach / (1.5 * block) - rest - 1e-9)  # blocks of 1.5 times the size at most
+    whole = max(round(reach / block - rest), least, 0)
     return reach / (whole + rest) if whole + rest else reach

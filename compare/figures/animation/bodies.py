@@ -147,6 +147,24 @@ def colours_of(
     return ScalarMappable(Normalize(-peak if sign else 0.0, peak), shown), float(beyond)
 
 
+def _places(body: Body, farther: np.ndarray) -> np.ndarray:
+    """Return how many convex blocks are drawn before that of each face [faces]: those that the
+    plane of a face parts from the viewer, on whose near side it lies, and those behind them."""
+    block, x = np.unique(body.block, return_inverse=True)[1], body.rest[body.faces]
+    x, normal = x / np.ptp(x), _normals(x) / np.linalg.norm(_normals(x), axis=1)[:, None]
+    planes = np.column_stack([normal, (normal * x[:, 0]).sum(axis=1)]).round(6)
+    never = np.zeros((block.max() + 1,) * 2, dtype=bool)  # does the second hide the first
+    for k in range(len(never)):
+        n, at = np.split(np.unique(planes[block == k], axis=0), [3], axis=1)
+        beyond = pd.DataFrame((x @ n.T > at.T - 1e-5).all(axis=1)).groupby(block).all().to_numpy()
+        never[k] |= beyond[:, n @ farther > 0].any(axis=1)
+        never[:, k] |= beyond[:, n @ farther < 0].any(axis=1)
+    behind = never & ~never.T  # the first, the second
+    for _ in range(len(behind).bit_length()):
+        behind |= behind @ behind
+    return behind.sum(axis=1)[block]
+
+
 class BodyView:
     """A body in axes, m, seen from the front or in an oblique parallel projection.
 
@@ -159,6 +177,8 @@ class BodyView:
         self.body, (right, up) = body, per_away
         self.projection = np.array([[1.0, 0.0], [right, up], [0.0, 1.0]])
         self.farther = np.array([-right, 1.0, -up])  # along the line of sight
+        parted = per_away == ABOVE and body.block.max() < 500  # of more, by mean distances
+        self.place = _places(body, self.farther) if parted else None
         drawn = (body.rest + body.motion) @ self.projection
         self.low, self.high = drawn.min(axis=(0, 1)), drawn.max(axis=(0, 1))
         # Triangles, and quadrilaterals if many, are only parts of blocks.
@@ -179,9 +199,8 @@ class BodyView:
         an oblique view faces turned away are left out, as they would cover adjacent faces."""
         corners, block = (self.body.rest + self.body.motion[i])[self.body.faces], self.body.block
         away = corners.mean(axis=1) @ self.farther
-        count = np.maximum(np.bincount(block), 1)
-        of_block = (np.bincount(block, away) / count)[block]
-        order = np.lexsort((-away, -of_block))
+        mean = pd.Series(away).groupby(block).transform("mean")
+        order = np.lexsort((-away, -mean if self.place is None else self.place))
         if self.farther[0]:
             order = order[_normals(corners[order]) @ self.farther <= 0]
         self.faces.set_verts(corners[order] @ self.projection)

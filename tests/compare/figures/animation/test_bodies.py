@@ -6,7 +6,15 @@ import pytest
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from jointwave.compare.figures.animation.bodies import FRONT, OBLIQUE, Body, BodyView, body_of
+from jointwave.compare.figures.animation.bodies import (
+    ABOVE,
+    FACES,
+    FRONT,
+    OBLIQUE,
+    Body,
+    BodyView,
+    body_of,
+)
 from jointwave.compare.figures.animation.snapshots import PRINCIPAL, STRESS, VELOCITY, ViewSettings
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import RC
@@ -100,3 +108,21 @@ def test_what_is_near_hides_what_is_far(per_away, order):
     shown = picture(Body(rest, still, faces[order], values[:, order], np.array(order)), per_away, 0)
     middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
     assert middle[0] > middle[2] + 50
+
+
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_a_small_block_stands_in_front_of_the_large_one_under_it(order):
+    """On the far left corner of a slab of 10 m x 10 m x 1 m a cube of 2 m shows its front, right
+    side and top, 4 + 1.6 + 1.2 m2 as drawn, and hides its base's 1.2 of the slab's 10 + 4 + 30."""
+    corner = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    unit = np.concatenate([corner, corner + Z])
+    rest = np.concatenate([unit * [10, 10, 1], unit * 2 + [0, 8, 1]])
+    rings = np.array(FACES["hexahedron"])
+    faces = np.concatenate([rings, rings + 8])
+    block = np.repeat(order, 6)
+    values = np.repeat([-1.0, 1.0], 6)[None]  # blue and red
+    red, _, blue = np.moveaxis(
+        picture(Body(rest, np.zeros((1, 16, 3)), faces, values, block), ABOVE, 0), -1, 0
+    )
+    share = (red > blue + 50).sum() / (blue > red + 50).sum()
+    assert share == pytest.approx(6.8 / 42.8, rel=0.05)  # edges are drawn, too
