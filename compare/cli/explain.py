@@ -123,7 +123,7 @@ def _segments(scene: Scene) -> list[Facts]:
             "intact_bar_speed": one.intact_modulus and sqrt(one.intact_modulus / one.density),
             "impedance": one.impedance,
             "joint_stiffness": one.regular_stiffness,
-            "has_joints": len(p.each) == 1 or isfinite(one.regular_own_stiffness),
+            "has_joints": not one.intact_modulus or isfinite(one.regular_own_stiffness),
             "transmission": other and 2 * one.impedance / (other.impedance + one.impedance),
         }
         for (start, stop), one, other in zip(pairwise(ends), each, [None, *each], strict=False)

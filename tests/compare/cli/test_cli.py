@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from math import sqrt
 from pathlib import Path
 
 import pytest
@@ -93,6 +94,22 @@ def test_explain_names_the_block_that_limits_the_step(pillar, facts):
     for one in found.values():
         assert one["longer_step"] > 2 and one["size"] < 1
     assert not explanation(pillar())["limits_the_step"]
+
+
+def test_explain_says_what_segments_are_and_transmit(pillar):
+    """A rock mass of wave speeds alone has joints, which take all of its compliance."""
+    fast = {"y": [25.0, 50.0], "density": 2700.0, "p_speed": 4000.0, "s_speed": 2300.0}
+    slow, quick = explanation(pillar(rock__intact_modulus=None, segments=[fast]))["segments"]
+    assert slow["has_joints"] and quick["has_joints"]
+    # E = mu (3 lambda + 2 mu) / (lambda + mu), by the squares of the speeds
+    moduli = [
+        rho * s**2 * (3 * p**2 - 4 * s**2) / (p**2 - s**2)
+        for rho, p, s in ((2400.0, 2200.0, 800.0), (2700.0, 4000.0, 2300.0))
+    ]
+    stiffnesses = [one["joint_stiffness"] for one in (slow, quick)]
+    assert stiffnesses == pytest.approx([modulus / 0.5 for modulus in moduli])
+    z, other = (sqrt(rho * E) for rho, E in zip((2400.0, 2700.0), moduli, strict=True))
+    assert quick["transmission"] == pytest.approx(2 * other / (z + other))
 
 
 def test_a_result_holds_what_was_warned_of(jointwave):
