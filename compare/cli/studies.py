@@ -46,9 +46,8 @@ def study(asked: Study) -> None:
 def effects(asked: Effects) -> None:
     """Measure the effects of a scene and show their summary."""
     wanted = [(asked.scene, one) for one in load(asked, every=False)]
-    run_and_show(
-        measuring.experiment(wanted[0][1].title, wanted, asked.out), asked.out, CORES, asked
-    )
+    one = measuring.experiment(wanted[0][1].title, wanted, asked.out)
+    run_and_show(one, asked.out, CORES, asked)
 
 
 def run_and_show(one: Experiment, out: Path | None, workers: int, shown: PrintOptions) -> None:
@@ -166,9 +165,7 @@ def fit(asked: Fit) -> None:
         return
     with terminal.progress(scene.name or scene.title) as advance:
         found = fits.fit(scene, curves, asked.free, solver, advance)
-    files = []
-    if asked.out is not None:
-        files = [write_csv(asked.out / "fit.csv", found.table.reset_index(), 12)]
+    files = [write_csv(asked.out / "fit.csv", found.table.reset_index(), 12)] if asked.out else []
     values, waveforms = found.values.reset_index(), found.waveforms.astype({"place": str})
     values.insert(1, "unit", [unit_of(key, scene) for key in values.key])
     if asked.as_json:
@@ -193,9 +190,8 @@ def fit(asked: Fit) -> None:
     terminal.say(f"misfit {waveforms.before.max():.3%} before, {worst.after:.3%} after{where}")
     terminal.say("values, with 95 % intervals", "bold")
     cells = values[["key", "unit", "value", "low", "high", "start"]]
-    terminal.show_table(
-        [*cells], cells.map(lambda x: x if isinstance(x, str) else f"{x:.6g}").values.tolist()
-    )
+    rows = cells.map(lambda x: x if isinstance(x, str) else f"{x:.6g}").values.tolist()
+    terminal.show_table([*cells], rows)
     for note in found.notes:
         terminal.say(f"note: {note}")
     terminal.say("The intervals assume the model: jointwave compare shows how far models differ.")

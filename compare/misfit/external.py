@@ -107,10 +107,8 @@ def _require_recorded(curves: Curves, scenes: Sequence[AnyScene]) -> None:
         return
     place, scene = next(iter(curves.waveforms)), scenes[0]
     if not hasattr(scene.record, place.key):
-        allowed = (
-            f"is not a receiver of a {scene.kind}; columns are named as {EXAMPLES[scene.kind]}"
-        )
-        raise SceneError(curves.file, str(place), None, allowed)
+        why = f"is not a receiver of a {scene.kind}; columns are named as {EXAMPLES[scene.kind]}"
+        raise SceneError(curves.file, str(place), None, why)
     held = ", ".join(place._replace(at=at).receiver for at in recorded(scene, place.key)) or "none"
     allowed = (
         f"must be at a receiver of the scene: {place.key} at {held}; record.{place.key} in the "

@@ -1,5 +1,6 @@
 """Recordings (files and arrays of recorders) as results, for the readings."""
 
+import logging
 import re
 from collections.abc import Mapping
 from os import PathLike
@@ -33,6 +34,7 @@ ACROSS = "NE XY RT LT 12"
 AXIS_OF = {word: axis for axis, words in DIRECTIONS.items() for word in words.split()}
 ENDING = rf"{'|'.join(AXIS_OF)}|(?<=[bdehms][hln])[12]"
 CHANNEL = re.compile(rf"((?:.*[\W_])?[a-z]{{0,2}})({ENDING})", re.IGNORECASE)
+log = logging.getLogger("jointwave")
 MOST_SAMPLES = 4_000_000  # of an uneven recording, resampled at its smallest interval
 
 
@@ -94,6 +96,10 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
             waves[at] = column.si(UNITS[at[0]])
         if len(waves) < len(found):
             raise ValueError("must name each column once")
+        directed = {at: wave for at, wave in waves.items() if at[1]}
+        if directed and (left := [f"{at[0]} of {at[2]}" for at in waves if not at[1]]):
+            log.warning("warning: %s: left out beside components: %s", choice.path, ", ".join(left))
+            waves = directed
         return dataset_of(time.si(TIME), waves)
     except (OSError, ValueError, MemoryError) as error:
         if isinstance(error, SceneError):

@@ -140,9 +140,8 @@ def read_rows(path: Path) -> Any:
     """Return a row, or a list of rows, from JSON; raises SceneError if the file is damaged."""
     try:
         found = read_json(path, LARGEST_ROW)
-        if not all(
-            isinstance(one, dict) for one in (found if isinstance(found, list) else [found])
-        ):
+        rows = found if isinstance(found, list) else [found]
+        if not all(isinstance(one, dict) for one in rows):
             raise ValueError("it has no rows")
         return found
     except ValueError as error:

@@ -115,6 +115,17 @@ def test_peaks_and_intensities_of_an_acceleration(files):
     assert jw.ppv(ramp, "acceleration").item() == pytest.approx(1.5)
 
 
+def test_a_channel_beside_components_is_left_out(tmp_path, caplog):
+    """A microphone of a seismograph: the peak is of the vector (3, 4, 12); a line says so."""
+    time = np.arange(200) * 1e-3
+    shape = np.sin(np.pi * time / time[-1]) ** 2
+    header = "time,Tran [mm/s],Vert [mm/s],Long [mm/s],Mic [Pa]"
+    path, table = tmp_path / "blast.csv", np.outer(shape, [3.0, 4.0, 12.0, 50.0])
+    np.savetxt(path, np.column_stack([time, table]), delimiter=",", header=header, comments="")
+    assert jw.ppv(path).item() == pytest.approx(13e-3 * shape.max())
+    assert caplog.messages == [f"warning: {path}: left out beside components: stress of Mic"]
+
+
 @pytest.fixture
 def row(tmp_path):
     """Write a wave at 500 m/s that loses a tenth over 10 m at two receivers; path and result."""
