@@ -40,6 +40,7 @@ def closing(pillar):
             "rock": ROCK,
             "load": {"shape": "sine", "amplitude": PEAK, "period": PERIOD},
             "soft_layers": [layer],
+            "prestress": {"normal": 0.0},
             "ends": {"start": "free", "end": "matched"},
             "time": {"duration": 0.024},
             "record": {"stress": [30.0], "velocity": [30.025], "interval": 1e-4},
@@ -94,7 +95,7 @@ def test_waveforms(closing, engine, stress):
     """What passes, 0.1 % off at most: of elements that resolve the wave, and of blocks an 800th of
     its length. A prestress of the wave's size stiffens the joint. The ledger closes but for what
     trapezoids of the work leave, second order in the step: 1e-6 of the work."""
-    scene = closing(prestress={"normal": stress} if stress else None)
+    scene = closing(prestress={"normal": stress})
     assert closing_joint.applies(scene)
     exact, found = closing_joint.solve(scene), engine(scene)
     for variable in ("stress", "velocity"):
