@@ -157,6 +157,28 @@ def pillar():
     return scene
 
 
+@pytest.fixture
+def plain(monkeypatch):
+    """Let blocks take their steps as plain Python, on one thread: nothing is compiled."""
+    from jointwave.dem.kernel import leapfrog, loop
+
+    def in_python(kernel_for):
+        def python_for(form):
+            kernel = kernel_for(form)
+            return getattr(kernel, "__wrapped__", kernel)
+
+        return python_for
+
+    stand_ins = {
+        "flush_denormals": lambda: 0,
+        "restore_denormals": lambda old: None,
+        "borrowed": lambda values: values,
+    }
+    monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
+    for key, stand_in in stand_ins.items():
+        monkeypatch.setattr(loop, key, stand_in)
+
+
 @pytest.fixture(scope="session")
 def in_toml():
     """Return a function that spells a value as TOML does: tables inline, a scene's keys a line."""
@@ -330,9 +352,3 @@ def mpiexec():
         pytest.skip("no mpiexec here")
     own = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_"))}
     return ("nice", "-n", "10", launcher), {**own, **OPEN_MPI}
-
-
-@pytest.fixture(scope="session")
-def scene_with(pillar):
-    """The same as `pillar`."""
-    return pillar

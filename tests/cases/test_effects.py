@@ -45,14 +45,14 @@ CALLS = {
 
 
 @pytest.mark.parametrize("names", CALLS)
-def test_a_key_of_a_pillar_calls_for_its_effects_alone(scene_with, names):
+def test_a_key_of_a_pillar_calls_for_its_effects_alone(pillar, names):
     nothing = {"record.energy": False}
-    assert active_effects(scene_with(**nothing)) == []
-    assert active_effects(scene_with(**nothing | CALLS[names])) == names.split(", ")
+    assert active_effects(pillar(**nothing)) == []
+    assert active_effects(pillar(**nothing | CALLS[names])) == names.split(", ")
 
 
-def test_every_effect_is_called_for_above_and_says_why(scene_with):
-    every = effects(scene_with())
+def test_every_effect_is_called_for_above_and_says_why(pillar):
+    every = effects(pillar())
     assert {one.name for one in every} == {name for names in CALLS for name in names.split(", ")}
     assert all(one.reason for one in every)
 
@@ -68,24 +68,24 @@ SPATIAL = {
 
 
 @pytest.mark.parametrize("reason", SPATIAL)
-def test_what_takes_a_pillar_off_its_axis(scene_with, reason):
-    scene = scene_with(**SPATIAL[reason])
+def test_what_takes_a_pillar_off_its_axis(pillar, reason):
+    scene = pillar(**SPATIAL[reason])
     reasons = {one.name: one.reason for one in effects(scene)}
     assert is_spatial(scene)
     assert reasons["spatial motion"] == f"{reason}: 6 degrees of freedom"
 
 
-def test_axial_gravity_and_a_load_against_the_axis_stay_axial(scene_with):
-    assert not is_spatial(scene_with(gravity=DOWN, **{"load.direction": [0, -1, 0]}))
+def test_axial_gravity_and_a_load_against_the_axis_stay_axial(pillar):
+    assert not is_spatial(pillar(gravity=DOWN, **{"load.direction": [0, -1, 0]}))
 
 
-def test_reasons_of_blocks_that_do_not_turn_and_of_one_joint(scene_with):
+def test_reasons_of_blocks_that_do_not_turn_and_of_one_joint(pillar):
     """Nothing shears the joints of an axial scene; a layer may be the only one without tension."""
-    still = effects(scene_with(**ACROSS, **{"motion.rotation": "none"}))
+    still = effects(pillar(**ACROSS, **{"motion.rotation": "none"}))
     (spatial,) = (one for one in still if one.name == "spatial motion")
     assert spatial.reason.endswith("3 degrees of freedom")
     layers = [{"y": 20.0, "tension": False}]
-    scene = scene_with(soft_layers=layers, joints=RUBS, **{"motion.rotation": "finite"})
+    scene = pillar(soft_layers=layers, joints=RUBS, **{"motion.rotation": "finite"})
     reasons = {one.name: one.reason for one in effects(scene)}
     assert reasons["slip"] == "the joints carry no shear"
     assert reasons["finite rotation"] == "the blocks do not rotate"

@@ -166,18 +166,18 @@ def test_step_means_telescope_to_the_momentum(load, dt, count):
     assert dt * means.sum() == pytest.approx(momentum, abs=1e-9 * dt * np.abs(means).sum() + 1e-9)
 
 
-def test_load_of_a_scene(scene_with):
+def test_load_of_a_scene(pillar):
     sine = {"shape": "sine", "amplitude": 2.0, "period": 0.1}
-    assert load_history(scene_with(load={"shape": "step", "amplitude": 3.0})) == Step(3.0)
-    assert load_history(scene_with(load=sine)) == Sine(2.0, 0.1, 1)
-    assert load_history(scene_with(load=sine | {"cycles": 3})) == Sine(2.0, 0.1, 3)
-    assert load_history(scene_with(load=sine | {"shape": "ricker"})) == Ricker(2.0, 0.1)
+    assert load_history(pillar(load={"shape": "step", "amplitude": 3.0})) == Step(3.0)
+    assert load_history(pillar(load=sine)) == Sine(2.0, 0.1, 1)
+    assert load_history(pillar(load=sine | {"cycles": 3})) == Sine(2.0, 0.1, 3)
+    assert load_history(pillar(load=sine | {"shape": "ricker"})) == Ricker(2.0, 0.1)
     tables = tomllib.loads((SHIPPED / "guo-li-2002" / "fig-03.toml").read_text())
     del tables["load"], tables["variants"]
     assert load_history(cases.load_tables(tables)) == Step(0.0)
 
 
-def test_recorded_history_scaled_by_amplitude(tmp_path, scene_with):
+def test_recorded_history_scaled_by_amplitude(tmp_path, pillar):
     """Beneath a header, or with a byte order mark before the first number."""
     blast = tmp_path / "blast.csv"
     for text in ("# a blast\ntime (s),stress (Pa)\n0,0\n1e-3,2e6\n4e-3,0\n", "\ufeff0,7\n1,8\n"):
@@ -185,7 +185,7 @@ def test_recorded_history_scaled_by_amplitude(tmp_path, scene_with):
         history = read_history(tmp_path / "blast.csv", "stress")
         assert history.stress.tolist() == ([7, 8] if "7" in text else [0, 2e6, 0])
     blast.write_text("0,0\n0.001,2e6\n0.004,0\n")
-    load = load_history(scene_with(load={"shape": "table", "amplitude": 0.5, "file": str(blast)}))
+    load = load_history(pillar(load={"shape": "table", "amplitude": 0.5, "file": str(blast)}))
     assert load.value(np.array([0.0005, 0.001, 0.0025])) == pytest.approx([5e5, 1e6, 5e5])
     coarse = step_means(
         load, 0.003, np.arange(100)
@@ -204,12 +204,12 @@ def test_synthetic_blast_is_what_its_file_says():
 
 
 @pytest.fixture
-def shaken(scene_with):
+def shaken(pillar):
     """A function of a quantity and a load: those of the base of the pillar."""
 
     def load(quantity, **keys):
         own = {"shape": "sine", "period": 0.01, "amplitude": 0.5, "quantity": quantity} | keys
-        return scene_with(load=own, **{"ends.start": "fixed"}).load
+        return pillar(load=own, **{"ends.start": "fixed"}).load
 
     return load
 

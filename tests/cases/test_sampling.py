@@ -17,9 +17,9 @@ def sampled(duration, interval):
 
 
 @pytest.fixture
-def scene(scene_with):
+def scene(pillar):
     """The pillar over 10 ms, sampled every millisecond."""
-    return scene_with(**{"time.duration": 0.01, "record.interval": 1e-3})
+    return pillar(**{"time.duration": 0.01, "record.interval": 1e-3})
 
 
 @pytest.mark.parametrize(
@@ -38,11 +38,11 @@ def test_whole_multiples_of_the_interval_end_on_a_sample(interval):
         assert len(times) == n + 1 and times[-1] == pytest.approx(n * interval, rel=1e-14)
 
 
-def test_default_interval_is_a_200th_of_the_period_or_a_2000th_of_the_duration(scene_with):
+def test_default_interval_is_a_200th_of_the_period_or_a_2000th_of_the_duration(pillar):
     own = {"record.interval": None, "time.duration": 0.01}
-    assert scene_with(**own, **{"load.period": 0.02}).interval == 1e-4
+    assert pillar(**own, **{"load.period": 0.02}).interval == 1e-4
     step = {"shape": "step", "amplitude": 1.0}
-    assert scene_with(**own, load=step).interval == 5e-6
+    assert pillar(**own, load=step).interval == 5e-6
 
 
 def test_clock(scene):
@@ -62,8 +62,8 @@ def test_a_step_that_fits_but_for_round_off_is_taken(scene, parts):
 
 
 @given(fraction=st.floats(0.01, 1.0), critical=st.floats(1e-7, 1e-3))
-def test_step_divides_the_interval_and_is_as_long_as_it_may_be(scene_with, fraction, critical):
-    scene = scene_with()
+def test_step_divides_the_interval_and_is_as_long_as_it_may_be(pillar, fraction, critical):
+    scene = pillar()
     time = clock(scene, critical, fraction, False, "dem")
     wanted = fraction * critical
     assert time.dt * time.stride == pytest.approx(scene.interval)

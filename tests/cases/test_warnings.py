@@ -82,24 +82,24 @@ SPECTRA = {
 
 
 @pytest.mark.parametrize(("load", "density"), SPECTRA.values(), ids=SPECTRA)
-def test_highest_frequency_holds_its_share_of_the_energy(scene_with, table, load, density):
+def test_highest_frequency_holds_its_share_of_the_energy(pillar, table, load, density):
     """Of every shape, and of a table of one sine cycle as stress, velocity and acceleration."""
     ends = {}
     if isinstance(load, str):
         ends = {} if load == "stress" else {"ends.start": "fixed"}
         t = np.linspace(0.0, 0.01, 201)
         load = table(t + 0.003, np.sin(2 * pi * t / 0.01), load)
-    found = highest_frequency(scene_with(load=load, **ends)) * 0.01
+    found = highest_frequency(pillar(load=load, **ends)) * 0.01
     below = quad(density, 1e-9, found, points=[1.0], limit=500)[0]
     assert below == pytest.approx(SHARE, abs=3e-3)
 
 
 @given(amplitude=st.floats(1e-30, 1e30), sign=st.sampled_from([-1, 1]))
-def test_warnings_do_not_depend_on_the_size_of_the_load(scene_with, amplitude, sign):
+def test_warnings_do_not_depend_on_the_size_of_the_load(pillar, amplitude, sign):
     changes = {"load.period": 0.001, "ends.end": "quiet", "source": None, "record.energy": False}
-    found = warnings(scene_with(**changes, **{"load.amplitude": sign * amplitude}))
+    found = warnings(pillar(**changes, **{"load.amplitude": sign * amplitude}))
     found = [line for line in found if not line.startswith("load.amplitude")]  # of its unit
-    assert found == warnings(scene_with(**changes)) and len(found) >= 2
+    assert found == warnings(pillar(**changes)) and len(found) >= 2
 
 
 END = BAR | {"time.duration": 0.03, "motion.rotation": "none"}
@@ -168,49 +168,47 @@ PILLARS = {
 
 
 @pytest.mark.parametrize("start", PILLARS)
-def test_a_likely_mistake_in_a_pillar_is_one_line_and_what_is_meant_none(scene_with, start):
+def test_a_likely_mistake_in_a_pillar_is_one_line_and_what_is_meant_none(pillar, start):
     wrong, meant = PILLARS[start]
-    assert len(lines(scene_with(**wrong), start)) == 1, warnings(scene_with(**wrong))
-    assert not lines(scene_with(**meant), start.split(" ")[0])
+    assert len(lines(pillar(**wrong), start)) == 1, warnings(pillar(**wrong))
+    assert not lines(pillar(**meant), start.split(" ")[0])
 
 
-def test_beyond_the_cut_off_of_the_chain(scene_with):
+def test_beyond_the_cut_off_of_the_chain(pillar):
     """c / (pi d) = 636.6 Hz."""
-    below, above = (scene_with(**BAR | {"load.period": 1.4943 / f}) for f in (620.0, 645.0))
+    below, above = (pillar(**BAR | {"load.period": 1.4943 / f}) for f in (620.0, 645.0))
     assert lines(below, "pillar.block = 0.5 m gives")
     assert lines(above, "pillar.block = 0.5 m: rigid blocks transmit nothing above 636.6 Hz")
     assert shortest_wave(above, calibrate(above)).reflection == 1.0
 
 
-def test_a_table_in_milliseconds_is_told_from_one_that_is_late(table, scene_with):
+def test_a_table_in_milliseconds_is_told_from_one_that_is_late(table, pillar):
     pulse = [0, 1, 0, 0]
     late = {"load": table([0.0, 0.15, 0.2, 0.3], pulse)}
-    (line,) = lines(scene_with(**late), "load.file")
+    (line,) = lines(pillar(**late), "load.file")
     assert "peaks at 0.15 s" in line and "0.12 s" in line
     for duration in (0.12, 30.0):  # where the scene's own duration is in seconds, or is not
         slip = {"load": table([0.0, 5.0, 10.0, 20.0], pulse), "record.interval": 1e-3}
-        (line,) = lines(scene_with(**slip, **{"time.duration": duration}), "load.file")
+        (line,) = lines(pillar(**slip, **{"time.duration": duration}), "load.file")
         assert "look like milliseconds" in line and line.endswith("in seconds they are 0.02")
-    assert not lines(scene_with(load=table([0.0, 0.005, 0.01, 0.02], pulse)), "load.file")
+    assert not lines(pillar(load=table([0.0, 0.005, 0.01, 0.02], pulse)), "load.file")
 
 
-def test_a_late_table_arrives_late(table, scene_with):
+def test_a_late_table_arrives_late(table, pillar):
     bar = {key: value for key, value in END.items() if key != "load.period"}
     for begin, count in ((0.0099, 0), (0.0101, 1)):
         late = table([0.0, begin, 0.015, 0.028], [0, 0, 1, 0])
-        assert len(lines(scene_with(**bar, load=late), "record.stress")) == count
+        assert len(lines(pillar(**bar, load=late), "record.stress")) == count
 
 
 @pytest.mark.parametrize("direction", [{}, ACROSS], ids=["axial", "shear"])
 @pytest.mark.parametrize("short, warned", [(0.999, True), (1.001, False)])
-def test_blocks_a_wavelength_are_those_of_the_wave_that_is_driven(
-    scene_with, direction, short, warned
-):
+def test_blocks_a_wavelength_are_those_of_the_wave_that_is_driven(pillar, direction, short, warned):
     """Ten blocks of 0.5 m: 5 m, at 1000 m/s along the bar and 1000 / sqrt(2.5) in shear."""
     speed = 1000.0 / sqrt(2 * 1.25) if direction else 1000.0
-    unit = highest_frequency(scene_with(**{"load.period": 1.0}))  # over one period
+    unit = highest_frequency(pillar(**{"load.period": 1.0}))  # over one period
     period = short * LEAST_BLOCKS * 0.5 * unit / speed
-    scene = scene_with(**BAR | direction | {"load.period": period})
+    scene = pillar(**BAR | direction | {"load.period": period})
     found = shortest_wave(scene, calibrate(scene))
     assert found.blocks == pytest.approx(short * LEAST_BLOCKS)
     assert bool(lines(scene, "pillar.block")) == warned
@@ -231,21 +229,21 @@ def test_blocks_a_wavelength_are_those_of_the_wave_that_is_driven(
         ("rock.intact_modulus", 8.64e16, "above rock's"),
     ],
 )
-def test_a_constant_in_another_unit_is_told_what_it_is_in_that_unit(scene_with, key, value, meant):
+def test_a_constant_in_another_unit_is_told_what_it_is_in_that_unit(pillar, key, value, meant):
     if key == "rock":
         value = {"density": 2400.0, **value}
     changes = {key: value}
     if key.startswith("joints"):
         changes["rock"] = {"density": 2400.0, "intact_modulus": 8.64e10}
-    assert any(meant in line for line in warnings(scene_with(**changes)))
+    assert any(meant in line for line in warnings(pillar(**changes)))
 
 
-def test_intact_rock_in_gigapascal_is_told_so_where_it_is_refused(scene_with):
+def test_intact_rock_in_gigapascal_is_told_so_where_it_is_refused(pillar):
     with pytest.raises(SceneError, match=r"86.4 GPa is 8.64e\+10 Pa$"):
-        scene_with(**{"rock.intact_modulus": 86.4})
+        pillar(**{"rock.intact_modulus": 86.4})
 
 
-def test_velocities_beside_ends_that_waves_deform_are_those_of_end_blocks(scene_with):
+def test_velocities_beside_ends_that_waves_deform_are_those_of_end_blocks(pillar):
     """By omega Z / k over the half block: of a wall and a free end nothing or little."""
     for changes, warned in (
         ({}, [0, 0.1]),
@@ -254,22 +252,22 @@ def test_velocities_beside_ends_that_waves_deform_are_those_of_end_blocks(scene_
         ({"rock": BAR["rock"] | {"intact_modulus": 8.64e10}}, []),
     ):
         places = {"record.velocity": [0.0, 0.1, 0.25, 49.75, 50.0], "record.stress": []}
-        found = lines(scene_with(**BAR | places | changes), "record.velocity")
+        found = lines(pillar(**BAR | places | changes), "record.velocity")
         said = [f"record.velocity = {y:g} m lies in the last half block" for y in warned]
         assert [line.split(" before")[0] for line in found] == said
 
 
-def test_quiet_ends_reflect_on_rigid_blocks_unless_a_source_asks_for_them(scene_with):
+def test_quiet_ends_reflect_on_rigid_blocks_unless_a_source_asks_for_them(pillar):
     """tan(k d / 4), sin(k d / 2) = pi f d / c: at 1.494 / 0.02 s = 74.7 Hz, of 1000 m/s."""
     quiet = BAR | {"ends.end": "quiet"}
     kd = 2 * np.arcsin(pi * 1.4943 / 0.02 * 0.5 / 1000.0)
-    (line,) = lines(scene_with(**quiet, source=None), "ends.end = 'quiet'")
+    (line,) = lines(pillar(**quiet, source=None), "ends.end = 'quiet'")
     assert f"reflects {tan(kd / 4):.2g} of the wave" in line and "'matched'" in line
     assert tan(kd / 4) > 5 * MOST_REFLECTED
-    assert not lines(scene_with(**quiet), "ends")  # the paper's (9)
-    assert not lines(scene_with(**BAR, **{"ends.end": "matched"}, source=None), "ends")
+    assert not lines(pillar(**quiet), "ends")  # the paper's (9)
+    assert not lines(pillar(**BAR, **{"ends.end": "matched"}, source=None), "ends")
     slow = quiet | {"load.period": 0.12}
-    assert not lines(scene_with(**slow, source=None), "ends")
+    assert not lines(pillar(**slow, source=None), "ends")
 
 
 def test_a_scene_without_a_wave_is_not_warned_of_one():

@@ -1,4 +1,4 @@
-"""What the tests of rigid blocks share: short rows in space, and steps as plain Python."""
+"""What the tests of rigid blocks share: short rows in space, narrow tiles, equal results."""
 
 from copy import deepcopy
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jointwave.dem.contacts import chunks
-from jointwave.dem.kernel import leapfrog, loop, parts
+from jointwave.dem.kernel import parts
 
 SHORT: dict[str, Any] = {
     "pillar__length": 8.0,
@@ -24,27 +24,6 @@ SHORT: dict[str, Any] = {
 def row(pillar):
     """Return a function that gives 16 blocks under an oblique eccentric blow, keys changed."""
     return lambda **changes: pillar(**{**deepcopy(SHORT), **changes})
-
-
-@pytest.fixture
-def plain(monkeypatch):
-    """Let blocks take their steps as plain Python, on one thread: nothing is compiled."""
-
-    def in_python(kernel_for):
-        def python_for(form):
-            kernel = kernel_for(form)
-            return getattr(kernel, "__wrapped__", kernel)
-
-        return python_for
-
-    stand_ins = {
-        "flush_denormals": lambda: 0,
-        "restore_denormals": lambda old: None,
-        "borrowed": lambda values: values,
-    }
-    monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
-    for key, stand_in in stand_ins.items():
-        monkeypatch.setattr(loop, key, stand_in)
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ def torn(law, layer):
 
 
 @pytest.mark.parametrize("engine", ["dem", "continuum-jointed"])
-def test_a_layer_may_hold_what_other_joints_do_not(engine):
+def test_a_layer_may_hold_what_other_joints_do_not(engine, plain):
     """Both ways to write the pillar are one, and keys of the layer come before those of joints."""
     one = jw.simulate(torn(OPEN, CEMENT | {"y": 1.0}), engine)
     other = jw.simulate(torn(CEMENT, OPEN | {"y": 2.0}), engine)

@@ -161,6 +161,7 @@ def test_quiet_sides_pass_small_waves_through_joints_that_a_prestress_has_closed
         "rock": {"density": DENSITY, "intact_modulus": 8.64e10, "intact_poisson": 0.0},
         "joint_sets": [bed, *[bed | {"name": "cross", "dip": 90.0}] * crossed],
         "prestress": {"xx": 0.0, "yy": 5e6},
+        "gravity": {"acceleration": 1e-3},
         "boundaries": dict.fromkeys(("left", "right"), "periodic")
         | dict.fromkeys(("bottom", "top"), "quiet"),
         "time": {"duration": 0.07},

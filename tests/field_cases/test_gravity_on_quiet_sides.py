@@ -136,6 +136,7 @@ def test_a_wave_enters_whole_through_a_base_whose_joints_the_weight_has_closed(e
             joint_sets=[bed],
             boundaries={"left": "periodic", "right": "periodic", "bottom": "quiet"},
             gravity={"acceleration": heavy},
+            prestress={"xx": 0.0, "yy": 0.0},
             loads=[
                 {"kind": "base", "side": "bottom", "direction": [0.0, 1.0], "quantity": "velocity"}
                 | {"shape": "half-sine", "amplitude": amplitude, "period": 0.004}

@@ -122,7 +122,7 @@ def test_what_has_not_come_to_rest_is_not_said_to_slide(least):
         jw.simulate(load_tables(tables), "dem")
 
 
-def test_points_far_from_the_edge_of_a_face_that_opens_are_warned_of_once(scene_with):
+def test_points_far_from_the_edge_of_a_face_that_opens_are_warned_of_once(pillar):
     def lines(**rule):
         found = warnings(load_tables(arch(2.0, **rule)))
         return [line for line in found if "point_rule" in line]
@@ -135,7 +135,7 @@ def test_points_far_from_the_edge_of_a_face_that_opens_are_warned_of_once(scene_
     assert lines(point_rule="midpoint", tension=True) == []
 
     def count(**changes):
-        return sum("joints.point_rule" in line for line in warnings(scene_with(**changes)))
+        return sum("joints.point_rule" in line for line in warnings(pillar(**changes)))
 
     opens = {"joints.tension": False}
     bends = opens | {"load.direction": [1.0, 0.0, 0.0]}

@@ -25,7 +25,7 @@ PILLAR = {
     "rock": {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10},
     "soft_layers": [{"y": 25.0, "spacing_stiffness": 1e8}],
     "load": {"shape": "ricker", "amplitude": 1e6, "period": 0.02},
-    "ends": {"start": "matched", "end": "matched"},
+    "ends": {"start": "quiet", "end": "quiet"},
     "time": {"duration": 0.05},
     "record": {"velocity": [25.0, 24.75, 25.25]},
 }

@@ -14,7 +14,7 @@ SLIPS = {"friction_angle": 25.0, "tension": False}
 WEAKENS = SLIPS | {"dynamic_friction_angle": 10.0, "weakening_distance": 1e-4}
 DILATES = {"dilation_angle": 8.0, "dilation_distance": 1e-3, "damping_ratio": 0.02}
 AGES = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-5}
-AGES |= SLIPS | {"reference_rate": 1e-6}
+AGES |= {"friction_angle": 25.0, "reference_rate": 1e-6}
 BREAKS = {"friction_angle": 25.0, "cohesion": 2e5, "tensile_strength": 1e5, "fracture_energy": 1.0}
 CLOSES = {"maximum_closure": 3e-4, "damping_ratio": 0.05}
 BASE = {"kind": "base", "side": "bottom", "quantity": "velocity", "direction": [0.6, 0.0, 0.8]}
@@ -25,7 +25,7 @@ RUNS = {
     "weakening, dilation, softening and closure, under weight": (
         BREAKS | CLOSES,
         WEAKENS | DILATES,
-        SHAKEN | {"prestress": None, "gravity": {}},
+        SHAKEN | {"prestress": None, "gravity": {"static": False}},
     ),
     "rate and state on a quiet base": (AGES, AGES, SHAKEN | {"boundaries": {"bottom": "quiet"}}),
 }
@@ -44,7 +44,7 @@ def rock(beds, walls, changes):
         prestress={"xx": 5e5, "yy": 0.0, "zz": 1e6},
         loads=[blow | {"direction": [0.6, 0.0, -0.8], "amplitude": 4e6, "period": 0.004}],
         boundaries={"bottom": "fixed"},
-        time={"duration": 0.01},
+        time={"duration": 0.006},
         numerics={"continuum": {"scheme": "explicit", "size": 1.0, "order": 1}},
         record={
             "points": [[0.5, 0.5, 3.5], [1.5, 1.5, 1.5]],
@@ -57,18 +57,19 @@ def rock(beds, walls, changes):
 
 
 EACH = [(name, engine) for name in RUNS for engine in ENGINES]
-#: Kernels of all of these laws take long to compile: by blocks alone, unless slow tests run.
+#: The kernel of all of these laws takes long to compile: steps of blocks are plain Python, of rock
+#: only where slow tests run.
 EACH[1] = pytest.param(*EACH[1], marks=pytest.mark.slow)
 
 
 @pytest.mark.parametrize(("name", "engine"), EACH)
-def test_a_run_in_space_goes_on_to_the_same_bits(engine, name, keeper_at):
+def test_a_run_in_space_goes_on_to_the_same_bits(engine, name, keeper_at, plain):
     scene, keeper = rock(*RUNS[name]), keeper_at(40)
     with pytest.raises(InterruptedRun):
         solve(engine, scene, keeper=keeper)
-    assert 40 <= keeper.done < 100
+    assert 40 <= keeper.done < 60
     whole, again = solve(engine, scene), solve(engine, scene, keeper=keeper)
     assert whole.data_vars.keys() == again.data_vars.keys()
-    assert float(abs(whole.slip).max()) > 1e-6
+    assert float(abs(whole.slip).max()) > 5e-7
     for key in whole.data_vars:
         assert whole[key].equals(again[key]), key

@@ -56,12 +56,12 @@ def in_space(scene, draw, times):
 
 
 @pytest.fixture(params=[axial, across, in_space])
-def made(request, scene_with):
+def made(request, pillar):
     """A scene of each kind, and a result of random numbers with every variable."""
     if request.param is in_space:
         (scene,) = load(CASES / "rock-mass/cavern.toml")
     else:
-        scene = scene_with(**(POINTS if request.param is axial else ACROSS))
+        scene = pillar(**(POINTS if request.param is axial else ACROSS))
     return scene, request.param(scene, np.random.default_rng(1).normal, sample_times(scene))
 
 
@@ -105,17 +105,17 @@ def test_motion_and_stress_have_named_axes(made):
     assert axes["term"] == list(AXIAL if is_axial else TERMS)
 
 
-def test_what_is_not_given_is_absent(scene_with):
-    scene = scene_with()
+def test_what_is_not_given_is_absent(pillar):
+    scene = pillar()
     n = len(sample_times(scene))
     waves = {"stress": np.zeros((1, n)), "velocity": np.zeros((0, n))}
     bare = dataset(scene, "images", sample_times(scene), waves)
     assert set(bare.data_vars) == {"stress", "velocity"}
 
 
-def test_hash_follows_every_number_and_the_samples_of_a_history(scene_with, tmp_path):
-    same = [scene_hash(scene_with()), scene_hash(scene_with())]
-    other = scene_hash(scene_with(**{"load.period": 0.010001}))
+def test_hash_follows_every_number_and_the_samples_of_a_history(pillar, tmp_path):
+    same = [scene_hash(pillar()), scene_hash(pillar())]
+    other = scene_hash(pillar(**{"load.period": 0.010001}))
     assert len({*same, other}) == 2
     (tmp_path / "scene.toml").write_text((CASES / "beyond/blast-history.toml").read_text())
     hashes = set()

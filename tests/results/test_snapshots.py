@@ -41,9 +41,9 @@ def test_snapshots_come_back_from_a_result_and_from_its_file(stress, tmp_path):
 @pytest.mark.parametrize(
     ("fields", "every"), [(None, None), (5e-5, 1), (1e-4, 2), (1.2e-4, 2), (1.3e-4, 3), (7e-3, 140)]
 )
-def test_time_between_snapshots_is_a_whole_number_of_samples(scene_with, fields, every):
+def test_time_between_snapshots_is_a_whole_number_of_samples(pillar, fields, every):
     """The last of 120 ms is no later than the last sample."""
-    scene = scene_with(**({} if fields is None else {"record.fields": fields}))
+    scene = pillar(**({} if fields is None else {"record.fields": fields}))
     assert samples_between(scene) == every
     if every == 140:
         assert sample_times(scene)[::every][-1] == pytest.approx(0.119)
@@ -57,15 +57,15 @@ def test_time_between_snapshots_is_a_whole_number_of_samples(scene_with, fields,
         ({"record.fields": 5e-5, "time.duration": 0.6}, "at most 10,000 snapshots"),
     ],
 )
-def test_a_time_that_does_not_fit_is_refused(scene_with, changes, words):
+def test_a_time_that_does_not_fit_is_refused(pillar, changes, words):
     with pytest.raises(SceneError, match=r"record\.fields = ") as caught:
-        scene_with(**changes)
+        pillar(**changes)
     assert words in str(caught.value)
 
 
-def test_snapshots_that_fit_no_file_are_refused(scene_with):
+def test_snapshots_that_fit_no_file_are_refused(pillar):
     """A variable of NetCDF 3 has less than 2 GiB: 89,478 vectors in each of 1000 snapshots."""
-    scene = scene_with(**{"record.fields": 1e-4, "time.duration": 0.0999})
+    scene = pillar(**{"record.fields": 1e-4, "time.duration": 0.0999})
     refuse_beyond_room(scene, 89_478)
     with pytest.raises(SceneError, match="1,000 snapshots of 89,479 nodes; at most 999 fit"):
         refuse_beyond_room(scene, 89_479)

@@ -61,7 +61,8 @@ def test_rollers_bear_the_weight_and_confine_it(engine, stiffness):
     """sigma_yy = rho g h, and of deformable rock sigma_xx = nu / (1 - nu) sigma_yy; no shear.
     Joints a thousandth as stiff as blocks beside the rollers come to rest as well."""
     soft = BED | {"normal_stiffness": stiffness, "shear_stiffness": stiffness}
-    scene = column(joint_sets=[soft], gravity={}, boundaries=ROLLERS)
+    touch = {"kind": "pressure", "side": "top", "shape": "step", "amplitude": 1e-3}
+    scene = column(joint_sets=[soft], gravity={}, boundaries=ROLLERS, loads=[touch])
     stress = solve(engine, scene)["stress"].isel(point=0, time=-1).values
     weight = 2600.0 * 9.81 * 5.0
     beside = weight / 3 if engine != "dem" else 0.0

@@ -68,9 +68,9 @@ def test_speeds_and_impedances():
     assert p.shear_impedance == exact(2529822.1281347036)
 
 
-def test_numbers_of_the_paper(scene_with):
+def test_numbers_of_the_paper(pillar):
     """nu, E_eq and S K_n from its speeds; G = rho c_s^2 comes back to the last bit."""
-    p = calibrate(scene_with())
+    p = calibrate(pillar())
     assert p.poisson == pytest.approx(0.4238, abs=5e-5)
     assert p.modulus == pytest.approx(4.375e9, rel=1e-3)
     assert 0.5 * p.own_stiffness[0] == pytest.approx(4.608e9, rel=1e-3)
@@ -301,9 +301,9 @@ def test_strength_of_every_joint(joints, layer, found):
         p.strenght  # noqa: B018
 
 
-def test_the_least_fracture_energy_that_is_named_is_accepted(scene_with):
+def test_the_least_fracture_energy_that_is_named_is_accepted(pillar):
     """The refusal rounds its number up, so that it can be copied."""
-    least = 1e5**2 / (2 * calibrate(scene_with()).regular_stiffness)
+    least = 1e5**2 / (2 * calibrate(pillar()).regular_stiffness)
     assert 0.57151 < least < 0.5716
-    p = calibrate(scene_with(**{"joints.tensile_strength": 1e5, "joints.fracture_energy": 0.5716}))
+    p = calibrate(pillar(**{"joints.tensile_strength": 1e5, "joints.fracture_energy": 0.5716}))
     assert (p.critical_opening > p.tensile_strength / p.stiffness).all()

@@ -20,14 +20,14 @@ def test_rules_integrate_what_they_should(count):
     assert 12 * w @ (x - 0.5) ** 2 == pytest.approx(1 - 1 / count**2, abs=1e-14)
 
 
-def test_the_paper_s_points_are_the_centres_of_quarters(scene_with):
+def test_the_paper_s_points_are_the_centres_of_quarters(pillar):
     """(2) of Guo & Li (2002), in its scenes; a scene's own default are the vertices."""
-    paper = scene_with().joints
+    paper = pillar().joints
     assert (paper.contact_points, paper.point_rule) == (None, "midpoint")
     x, z, area = face_points(3.0, None, "midpoint")
     assert sorted(zip(x, z, strict=True)) == [(i, j) for i in (-0.75, 0.75) for j in (-0.75, 0.75)]
     assert (area == 2.25).all()
-    assert scene_with(joints={}).joints.point_rule == "vertices"
+    assert pillar(joints={}).joints.point_rule == "vertices"
 
 
 def polygon(rng, corners):

@@ -121,8 +121,8 @@ SPEED = 2 * 0.1 * np.sqrt(8.64e10 * 2400)
         (SHAKEN | {"load.quantity": "acceleration"}, SPEED * 0.01 / np.pi),
     ],
 )
-def test_stress_in_reach(scene_with, changes, stress):
-    assert stress_in_reach(scene_with(**CLOSES, **changes)) == pytest.approx(stress, rel=1e-6)
+def test_stress_in_reach(pillar, changes, stress):
+    assert stress_in_reach(pillar(**CLOSES, **changes)) == pytest.approx(stress, rel=1e-6)
 
 
 @pytest.mark.parametrize(("openings", "stress"), [([], 5e6 + 2e6), ([SQUARE], 3 * 5e6 - 2e6 + 3e6)])

@@ -66,13 +66,13 @@ def test_sides_of_a_slope(written):
         load_variant(path, "", {**changes, "waves.0.direction": [1.0, 0.0]})
 
 
-def test_both_kinds_are_read_and_told_apart(written, scene_with):
+def test_both_kinds_are_read_and_told_apart(written, pillar):
     """A command for one kind of scene only says so in one line, with the file; the error crosses
     processes whole."""
     path = written()
-    mass, pillar = load(path)[0], scene_with()
-    assert (mass.kind, pillar.kind) == ("rock mass", "pillar")
-    assert pillar_of(pillar) is pillar
+    mass, column = load(path)[0], pillar()
+    assert (mass.kind, column.kind) == ("rock mass", "pillar")
+    assert pillar_of(column) is column
     with pytest.raises(SceneError, match="is a rock mass; a fit accepts pillars only") as error:
         pillar_of(mass, "a fit")
     assert str(error.value).startswith(f"{path}: domain: ")

@@ -12,10 +12,10 @@ from jointwave.results.dataset import energy_residual
 
 
 @pytest.fixture(scope="module")
-def comparisons(scene_with, compared):
+def comparisons(pillar, compared):
     """Variants of one pillar, the second of them damped."""
     short = {"time.duration": 0.03}
-    scenes = [scene_with(**short, **c) for c in ({}, {"joints.damping_ratio": 0.05})]
+    scenes = [pillar(**short, **c) for c in ({}, {"joints.damping_ratio": 0.05})]
     return compared(scenes[0], scenes[1].model_copy(update={"name": "damped"}))
 
 

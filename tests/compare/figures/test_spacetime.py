@@ -85,11 +85,11 @@ def test_largest_force_is_drawn_else_what_turns(pillar, changes, words):
     assert len(found) == 1 and found[0].table.iloc[:, 2].any()
 
 
-def test_diagrams_hold_the_numbers_of_the_table(scene_with, ink):
+def test_diagrams_hold_the_numbers_of_the_table(pillar, ink):
     """And these are of the engine, and of the difference from another, whose largest value is said.
     A soft layer is drawn through each of them."""
     layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
-    scene = scene_with(soft_layers=[layer], **{"time.duration": 0.03})
+    scene = pillar(soft_layers=[layer], **{"time.duration": 0.03})
     found = fields_of(scene, "dem", "equivalent-bar")
     fields = {"dem": found["dem"], "continuum-equivalent": found["equivalent-bar"]}
     one, other = (result.stress.values for result in fields.values())

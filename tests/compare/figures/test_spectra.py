@@ -51,10 +51,10 @@ def test_nothing_passes_above_the_cut_off_of_the_chain(pillar, compared):
     assert passed("equivalent-bar") > 0.1
 
 
-def test_curves_hold_the_numbers_of_the_table(scene_with, compared, ink):
+def test_curves_hold_the_numbers_of_the_table(pillar, compared, ink):
     """In logarithmic axes, each panel with the marks of the load and of the cut-off."""
     keys = {"time.duration": 0.04, "record.velocity": [30.25]}
-    scenes = [scene_with(soft_layers=layers, **keys) for layers in ([], [LAYER])]
+    scenes = [pillar(soft_layers=layers, **keys) for layers in ([], [LAYER])]
     (picture,) = spectra("fig", compared(*scenes))
     columns = iter(c for c in picture.table.columns if c != "frequency (Hz)")
     factors = {"Pa/Hz": 1e-6, "m/s/Hz": 1.0}

@@ -44,6 +44,6 @@ def row():
 
 
 @pytest.fixture(scope="session")
-def simulated(scene_with):
+def simulated(pillar):
     """Return a function that gives a number of snapshots of a short pillar by both engines."""
-    return cache(lambda count=41: take(scene_with(**SHORT), 0.02 / (count - 1)))
+    return cache(lambda count=41: take(pillar(**SHORT), 0.02 / (count - 1)))
