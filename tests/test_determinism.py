@@ -18,17 +18,16 @@ SHORT |= {"record.stress": [0.0, 5.0, 7.3], "record.velocity": [0.25, 6.1]}
 LOSSY = {"joints.damping_ratio": 0.02, "joints.tension": False, "ends.end": "quiet"}
 ROCK = LOSSY | {"numerics.continuum.elements_per_block": 2}
 
-#: Thirteen tiles of 1024 blocks, with what threads share: dashpots, slip, the ledger, receivers.
+#: Thirteen tiles of 1024 blocks, with what threads share: slip, the ledger, receivers.
 ROW = {
     "pillar.length": 6400.0,
     "load.direction": [0.6, 0.8, 0.0],
-    "joints.damping_ratio": 0.02,
     "joints.friction_angle": 30.0,
     "joints.cohesion": 1e5,
     "record.stress": [2.0, 32.0, 320.0],
     "record.velocity": [0.25, 31.9],
 }
-THREADS = {f"{count} threads": count for count in (1, 2, 3)}
+THREADS = {f"{count} threads": count for count in (1, 3)}
 
 #: Scenes of each engine and scheme: who solves them, and what is changed.
 RUNS = {
@@ -99,9 +98,8 @@ def test_the_last_bit_of_a_load_is_told():
 
 
 def test_threads_change_no_bit_of_a_run(results):
-    found = [results[0][name] for name in THREADS]
-    assert [result.attrs["threads"] for result in found] == [1, 2, 3]
-    energy = found[0].energy.values
-    for other in found[1:]:  # the ledger's sums have another order
-        assert abs(other.energy.values - energy).max() < 1e-13 * abs(energy).max()
-        assert_same_bits(*(one.drop_vars("energy") for one in (found[0], other)))
+    one, other = (results[0][name] for name in THREADS)
+    assert (one.attrs["threads"], other.attrs["threads"]) == (1, 3)
+    energy = one.energy.values  # the ledger's sums have another order
+    assert abs(other.energy.values - energy).max() < 1e-13 * abs(energy).max()
+    assert_same_bits(one.drop_vars("energy"), other.drop_vars("energy"))

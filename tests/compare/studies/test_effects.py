@@ -139,6 +139,7 @@ def known(monkeypatch):
 
     monkeypatch.setattr(effects, "step_costs", costs)
     monkeypatch.setattr(effects, "cost_of_every_effect", lambda scene: StepCost(40.0, 0.0))
+    monkeypatch.setattr(effects.step_cost, "with_every_effect", lambda scene: scene)
 
 
 def run(variant, folder, progress=None):

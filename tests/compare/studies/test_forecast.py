@@ -216,6 +216,12 @@ def test_every_effect_is_measured_once_in_as_many_blocks(monkeypatch):
     assert [one.block_count for one in timed] == [2, 100, 1000]
 
 
+@pytest.mark.slow  # it compiles the largest kernels
+@pytest.mark.parametrize("name", [SCENE, "rock-mass/brickwork"])
+def test_scenes_with_every_effect_run(name):
+    assert step_costs([with_every_effect(cases.load_variant(find(name)))])[0].ns > 0
+
+
 def test_every_effect_that_can_be_beside_others_is_there():
     """In a rock mass all but periodic and roller sides and, since blocks are rigid, a quality
     factor; in a pillar also but those that exclude others of it."""

@@ -83,7 +83,6 @@ def test_no_tension_converges_at_second_order(fourth):
     """The force has a kink where a joint opens or closes: order two, if not at every halving."""
     changes = {
         "joints__tension": False,
-        "ends__end": "fixed",
         "prestress": {"normal": 3e5},
         "time__duration": 0.05,
         "record": {"stress": [20.0], "interval": 1e-3},
