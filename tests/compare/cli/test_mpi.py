@@ -64,12 +64,12 @@ MISTAKES = {
 
 @pytest.fixture(scope="module")
 def under_mpi(mpiexec):
-    """Return a function that runs Python with these arguments in three processes, checks its exit
+    """Return a function that runs Python with these arguments in some processes, checks its exit
     status, and gives the finished process."""
     launcher, environment = mpiexec
 
-    def run(*arguments, code=0):
-        command = [*launcher, "-n", "3", sys.executable, *map(str, arguments)]
+    def run(*arguments, code=0, count=3):
+        command = [*launcher, "-n", str(count), sys.executable, *map(str, arguments)]
         done = subprocess.run(
             command, capture_output=True, text=True, env=environment, timeout=1800
         )
@@ -156,7 +156,7 @@ def test_a_process_that_fails_alone_ends_all(
     """Others wait for what it would have sent them; its line is the only one, of a mistake of the
     program too."""
     program = SERIAL.format(error=error, rank=rank, function=function)
-    done = under_mpi("-c", program, *RUN, *SHORT, "--out", tmp_path, code=code)
+    done = under_mpi("-c", program, *RUN, *SHORT, "--out", tmp_path, code=code, count=2)
     (line,) = said(done.stderr)
     assert all(word in line for word in words)
 
