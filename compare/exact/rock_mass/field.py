@@ -94,7 +94,7 @@ def _planes_in_space(scene: RockMass) -> RockMass:
     back = [x for x in sides if getattr(of, x) in ("free", "fixed") and not in_stack(x)]
     quiet, why = [x for x in sides if getattr(of, x) == "quiet"], None
     if scene.regions and not known:
-        why = "regions"
+        why = f"regions, where {known.reason}"
     elif not known and not all(one.spacing for one in scene.joint_sets):
         why = "joints that are alone"
     elif any(sides.index(one) // 2 != sides.index(other) // 2 for one in back for other in quiet):

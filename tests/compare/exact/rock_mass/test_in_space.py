@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from closed_forms.one_joint import relaxed_sine
+from jointwave.cases.errors import SceneError
 from jointwave.compare.engines import applies, solve
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.results.stress import tensors
@@ -165,3 +166,18 @@ def test_a_free_face_along_the_joints_sends_waves_back(rock_mass, joint, wave, k
     assert abs(across).max() < 1e-6 * abs(found).max()
     bottom = field_of(scene)(np.array(scene.record.points), np.linspace(0, 0.03, 301))
     assert abs(bottom.velocity.swapaxes(1, 2) - found).max() < 1e-6 * abs(found).max()
+
+
+def test_why_waves_do_not_enter_regions_is_said(rock_mass, wave):
+    """Soft rock above sends S waves down at 25 degrees, from which P waves in the rock decay."""
+    down = {"direction": [0.3, 0.3, -(0.82**0.5)], "polarisation": [0.0, 0.0, 1.0]}
+    changes = {
+        "domain": {"size": [60.0, 60.0, 30.0]},
+        "regions": [{"name": "soft", "through": [0.0, 0.0, 15.0], "intact_modulus": 2e10}],
+        "joint_sets": [],
+        "waves": [wave(kind="S", through=[30.0, 30.0, 30.0], **down)],
+        "boundaries": QUIET,
+        "record": {"points": [[30.0, 30.0, 10.0]], "joints": []},
+    }
+    with pytest.raises(SceneError, match=r"regions, where .* has an evanescent wave in a region"):
+        field_of(rock_mass(**changes))
