@@ -116,6 +116,8 @@ def _show_verdicts(found: list[Comparison], every: bool) -> None:
         given = distances.xs(GIVEN)
         furthest = given["relative L2 (%)"].groupby(level=["variant", "pair"]).idxmax()
         terminal.show_frame(given.loc[furthest, ["relative L2 (%)", "peak ratio"]])
+    if not every and any(beside.shift for one in found for beside in one.besides):
+        terminal.show_frame(tables.alignment_frame(found))
     for beside in found[0].besides:
         start, end = beside.time[0], beside.time[-1]
         if end - start < WHOLE * scene.time.duration:
@@ -135,9 +137,8 @@ def _show_remarks(scores: dict[str, EngineScore]) -> None:
         if words:
             terminal.say(f"static state of {label_of(engine)} {in_words(words)}")
         if len(of_all.variants) > 1 and of_all.unchecked:
-            terminal.say(
-                f"not checked independently: {label_of(engine)} ({', '.join(of_all.unchecked)})"
-            )
+            unchecked = ", ".join(of_all.unchecked)
+            terminal.say(f"not checked independently: {label_of(engine)} ({unchecked})")
         if of_all.broken:
             terminal.say(f"exceeds the scene's bound: {', '.join(dict.fromkeys(of_all.broken))}")
 

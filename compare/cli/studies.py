@@ -128,9 +128,8 @@ def _show_plan(one: plans.Plan, asked: Plan) -> None:
     if best is None:
         for reason in dict.fromkeys(one.skipped.values()):
             terminal.say(f"skipped: {reason}")
-        terminal.say(
-            f"{misfit} % is not met: no engine's model is close enough to finest physics in time"
-        )
+        why = "no engine's model is close enough to finest physics in time"
+        terminal.say(f"{misfit} % is not met: {why}")
         return
     terminal.say(f"numerical error: against {_named(best.reference)}, the engine's own model")
     errors = [percent(x) for x in (best.numerical, best.modelling, best.misfit, one.misfit)]

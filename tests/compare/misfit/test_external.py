@@ -10,6 +10,7 @@ import xarray as xr
 import jointwave as jw
 from jointwave.cases.errors import SceneError
 from jointwave.cases.schema.tables import Prestress
+from jointwave.compare.cli.compare import show_comparisons
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.figures.charts.waveforms import draw_solutions
 from jointwave.compare.figures.receivers import panels
@@ -195,6 +196,14 @@ def test_clock_is_moved_onto_the_solution_that_fits_best(scene, tmp_path):
     assert beside.shift.onto == "lattice"
     assert beside.shift.seconds == pytest.approx(-1e-3, abs=0.1 * scene.interval)
     assert measure_curves(align_curve(curves, scene, {}, align=True), {}) == []
+
+
+def test_the_summary_says_how_far_a_clock_was_moved(scene, tmp_path, capsys):
+    time, stress = sampled(scene)
+    curves = read_curves([save(tmp_path / "late.csv", time + 1e-3, stress)], [scene])
+    show_comparisons([compare(scene, curves, align=True)], every=False, as_json=False)
+    (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("late.csv  base"))
+    assert re.search(r"  -0.001 +rigid blocks, exact +1 *$", line)
 
 
 def test_curves_are_in_table_figure_and_files(scene, tmp_path):
