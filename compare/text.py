@@ -18,7 +18,8 @@ def percent(x: float, digits: int = 3) -> str:
 
 def mean_and_worst(peak: Any) -> str:
     """Return a `PeakDifference` in percent, the mean and the worst receiver; "" for None."""
-    return f"{100 * peak.mean:.2g}, ≤ {100 * peak.worst:.2g}" if peak else ""
+    both = (f"{float(f'{100 * x:.2g}'):g}" for x in (peak.mean, peak.worst)) if peak else ()
+    return ", ≤ ".join(both)
 
 
 def in_seconds(x: float) -> str:

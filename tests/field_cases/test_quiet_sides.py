@@ -270,6 +270,7 @@ def test_the_same_is_said_in_space(kind, east):
     found = side_error(jw.load(in_space(tables, east, kind)))
     assert found.part == pytest.approx(side_error(jw.load(tables)).part, rel=1e-12)
     assert "joint set 'joint' slips" in found.words and "[4, 4, 8]" in found.words
+    assert "an error of up to 100 % of the wave" in found._replace(part=1.0).words
 
 
 def test_shipped_scenes_have_exact_sides_but_one_and_those_beside_loads():

@@ -57,7 +57,7 @@ class SideError(NamedTuple):
         nearer = f"; nearer: {_first(places)}" if places else ""
         return (
             f"boundaries: {self.cause}, which waves at quiet sides leave out: an error of up to "
-            f"{100 * self.part:.2g} % of the wave enters there, of which less than half is left "
+            f"{100 * self.part:.3g} % of the wave enters there, of which less than half is left "
             f"{self.wavelength:.3g} m (a wavelength of P) inside{nearer}"
         )
 

@@ -19,7 +19,7 @@ from jointwave.compare.misfit.metrics import Worst
 from jointwave.compare.misfit.pairs import Comparison, measure, measure_curves
 from jointwave.compare.report.scenes import SolvedScene, lead
 from jointwave.compare.report.verdict import NOT_CHECKED, EngineScore, VariantScore, engine_scores
-from jointwave.compare.text import in_seconds
+from jointwave.compare.text import in_seconds, mean_and_worst
 
 WAVE = np.sin(np.linspace(0, 9, 200))
 ABOUT = {"seconds_stepping": 0.02, "warnings": '["a slip"]', "steps": 100}
@@ -247,3 +247,8 @@ def test_an_engine_has_its_distance_for_each_kind_of_scenes(scenes, words):
 )
 def test_seconds_are_written_in_the_unit_that_suits_them(seconds, text):
     assert in_seconds(seconds) == text
+
+
+def test_large_differences_of_peaks_are_no_powers_of_ten():
+    assert mean_and_worst(SimpleNamespace(mean=0.1234, worst=7.2)) == "12, ≤ 720"
+    assert mean_and_worst(None) == ""
