@@ -1,6 +1,5 @@
 """The summary of a sweep; for an ensemble also mean and percentiles over its members."""
 
-import json
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -44,12 +43,12 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
         allowed = f"all {len(failed)} points fail: {failed.message.iloc[0]}"
         raise SceneError(scene, "", None, allowed)
     files = [] if out is None else [write_csv(out / "sweep.csv", rows)]
-    facts = {"rows": _records(rows)}
+    facts = {"rows": rows.to_dict("records")}
     by = "pair" if "pair" in done else "engine"
     shown, numbers, legend = done, list(NUMBERS[by]), "All numbers are in sweep.csv."
     if MEMBER in keys:
         shown = statistics(done, keys, numbers)
-        facts["statistics"] = _records(shown)
+        facts["statistics"] = shown.to_dict("records")
         if out is not None:
             files += write_ensemble(out, shown, done, keys)
         shown = shown[shown.number == numbers[0]]
@@ -70,10 +69,6 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
         facts,
         legend=legend,
     )
-
-
-def _records(rows: pd.DataFrame) -> Any:
-    return json.loads(rows.to_json(orient="records"))
 
 
 def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -> pd.DataFrame:

@@ -82,13 +82,16 @@ def test_a_comparison_is_swept_beside_curves_of_others(command, tmp_path):
     for peak in (0.1, 0.2, 0.2):
         text = f"time [ms], stress@4 [MPa]\n0, 0\n10, {peak}\n19, 0\n"
         (tmp_path / "curve.csv").write_text(text)
-        rows = json.loads(command(*compare(*sweep, "--json")).out)["rows"]
-        found.append([row["misfit"] for row in rows if row["one"] == "curve.csv"])
+        told = json.loads(command(*compare(*sweep, "--json")).out)["rows"]
+        found.append([row["misfit"] for row in told if row["one"] == "curve.csv"])
     assert found[0] and found[0] != found[1] == found[2]
     assert len(list((tmp_path / "out" / "points").iterdir())) == 2 * 2
     said = command(*compare(*sweep)).out
     assert "rigid blocks ~ rigid blocks, exact" in said and "stress at y = 4 m" in said
     rows = pd.read_csv(tmp_path / "out" / "sweep.csv")
+    for number in ("misfit", "delay", "floor"):  # to the digits of the file, however small
+        expected = pytest.approx(rows[number].to_numpy(), rel=1e-8, nan_ok=True)
+        assert pd.DataFrame(told)[number].astype(float).to_numpy() == expected
     blocks = rows[(rows.pair == "dem ~ lattice") & (rows.quantity == "stress") & (rows.y == 4.0)]
     assert set(blocks["ends.start"]) == {"free", "quiet"}
     assert blocks.misfit.between(1e-9, 5e-3).all() and blocks.misfit.nunique() == 2
