@@ -199,6 +199,6 @@ def _planes(
 
 
 def _divided(reach: float, rest: float, block: float) -> float:
-    """Return the spacing, at most 1.5 `block`, that divides a reach (m) into whole blocks + `rest`."""
+    """Return the spacing, at most 1.5 `block`, that divides a reach into blocks and `rest`."""
     whole = max(round(reach / block - rest), ceil(reach / (1.5 * block) - rest - 1e-9), 0)
     return reach / (whole + rest) if whole + rest else reach
