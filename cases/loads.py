@@ -33,29 +33,38 @@ BINS, PADDING, MOST_CYCLES = 4096, 8, 32
 
 
 def load_history(scene: Scene) -> LoadHistory:
-    """Return the scene's load as a function of time: the end stress or the motion of the base.
+    """Return the scene's load as a function of time: the end stress or the velocity of the base.
 
     Stress is positive in compression. A wave that enters an absorbing start (compliant base) loads
     it by twice its stress, 2 rho c v: the dashpot takes half (Mejia & Dawson, 4th FLAC Symposium,
     2006).
     """
     load, amplitude = scene.load, scene.load.amplitude
-    if not load.is_motion or scene.shakes_base:
-        return history_of(load, amplitude * (2 if load.quantity == "incident-stress" else 1))
-    p = calibrate(scene).at_start.at_rest
-    return velocity_of(load, 2 * amplitude * (p.shear_impedance if load.is_across else p.impedance))
+    if load.quantity == "incident-stress":
+        amplitude *= 2
+    elif load.is_motion and not scene.shakes_base:
+        p = calibrate(scene).at_start.at_rest
+        amplitude *= 2 * (p.shear_impedance if load.is_across else p.impedance)
+    return velocity_of(load, amplitude)
 
 
-def block_load(scene: Scene) -> LoadHistory:
-    """Return the load as it acts on the first rigid block: behind an absorbing start, late by the
-    travel time through the intact rock before the block's middle; half of that behind a quiet
-    start. An oblique load is late like its axial part."""
-    load, p = load_history(scene), calibrate(scene).at_start.at_rest
+def late_load(scene: Scene, model: str = "blocks") -> LoadHistory:
+    """Return the load as it acts on the start of rigid "blocks", "jointed" rock or an "equivalent"
+    bar, such that its wave enters there when it does in the bar."""
+    return Late(load_history(scene), late_by(scene, model))
+
+
+def late_by(scene: Scene, model: str) -> float:
+    """Return how late that is behind an absorbing start, s: by the travel time through half a rigid
+    block, or the half joint of jointed rock alone, where the end is matched; half of that where it
+    is quiet. An oblique load is late like its axial part."""
+    p, load = calibrate(scene).at_start.at_rest, scene.load
     part = {"matched": 0.5, "quiet": 0.25}.get(scene.ends.start, 0.0)
-    impedance, modulus = p.impedance, p.intact_modulus
-    if not scene.load.direction[1]:
-        impedance, modulus = p.shear_impedance, p.intact_shear_modulus
-    return Late(load, part * p.spacing * impedance / modulus) if part and modulus else load
+    impedance, modulus, intact = p.impedance, p.modulus, p.intact_modulus
+    if bool(load.direction[1]) == (load.arm is not None):  # shear or torsion
+        impedance, modulus, intact = p.shear_impedance, p.shear_modulus, p.intact_shear_modulus
+    rock = {"blocks": 0.0, "jointed": 1 / max(intact or modulus, modulus)}.get(model, 1 / modulus)
+    return part * p.spacing * impedance * (1 / modulus - rock)
 
 
 def velocity_of(pulse: Pulse, amplitude: float) -> LoadHistory:
@@ -105,7 +114,7 @@ def with_load_itself(
     faced = np.flatnonzero((sections.left == 0) & (sections.weight < 1.0))
     if not faced.size or scene.shakes_base or scene.load.arm is not None:
         return stress
-    load, found = block_load(scene), stress.copy()
+    load, found = late_load(scene), stress.copy()
     mean = (load.impulse(times + dt / 2) - load.impulse(times - dt / 2)) / dt
     axes = scene.load.direction[1] if stress.ndim == 2 else np.array(scene.load.direction)
     beside = np.multiply.outer(axes, load.value(times) - mean)

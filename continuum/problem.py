@@ -83,12 +83,12 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
 
 
 def in_time(
-    scene: AnyScene, problem: Problem, time: Clock, incident: IncidentField | None
+    scene: AnyScene, problem: Problem, time: Clock, incident: IncidentField | None, model: str
 ) -> Problem:
     """Return a problem with the forces and base motion of a scene, for the steps of a clock;
     incident : field of the waves; absent: that in unjointed rock."""
     body, forces = problem.body, None
-    pushed, waves = pushes(scene, body), waves_of(scene, body, incident)
+    pushed, waves = pushes(scene, body, model), waves_of(scene, body, incident)
     if pushed or waves is not None:
         forces = Loads(body.mass.size, time.dt, pushed, waves)
     return problem._replace(forces=forces, held=held_sides(scene, body, time))

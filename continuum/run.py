@@ -62,7 +62,7 @@ def simulate(
     began, comm = perf_counter(), comm if comm is not None and comm.size > 1 else None
     plan = plan_of(scene, model, rock, dim, comm)
     time = plan.choice.time
-    problem, rest, sudden = at_rest(scene, in_time(scene, plan.problem, time, incident))
+    problem, rest, sudden = at_rest(scene, in_time(scene, plan.problem, time, incident, model))
     steps = stepper(scene, problem, plan.choice, rest, sudden)
     monitor = Monitor(plan, steps, None if rest is None else rest.u)
     recorder = None if scene.record.fields is None else RockRecorder(scene, plan.found, steps)

@@ -1,8 +1,6 @@
-"""Conditions under which an exact solution covers a scene, and the scene's excitation."""
+"""Conditions under which an exact solution covers a scene."""
 
 from jointwave.cases.effects import is_spatial
-from jointwave.cases.histories import LoadHistory
-from jointwave.cases.loads import block_load, velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
@@ -55,11 +53,3 @@ def static_stress(scene: Scene) -> float:
 def has_thick_layer(scene: Scene) -> bool:
     """Return whether a soft layer is rock with a thickness, not a joint."""
     return any(layer.thickness is not None for layer in scene.soft_layers)
-
-
-def drive(scene: Scene) -> LoadHistory:
-    """Return the end stress (Pa) or, where the load is a motion, the base's velocity (m/s)."""
-    load = scene.load
-    if scene.shakes_base:
-        return velocity_of(load, load.amplitude)
-    return block_load(scene)

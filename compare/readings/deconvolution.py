@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
+from jointwave.cases.loads import late_by
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import pillar_of
 from jointwave.cases.schema.scene import Scene
@@ -50,7 +51,8 @@ def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-
     """
     from scipy.fft import next_fast_len
 
-    bar, impedance = _column(pillar_of(load(scene), "deconvolve"))
+    column = pillar_of(load(scene), "deconvolve")
+    bar, impedance = _column(column)
     n, time = surface.sizes["time"], surface.time.values
     dt = (time[-1] - time[0]) / (n - 1)
     lengths = np.diff([*(rock.y for rock in bar.rocks), bar.length])
@@ -59,6 +61,7 @@ def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-
     count = next_fast_len(2 * (n + 2 * lead))
     s = 2j * np.pi * np.fft.rfftfreq(count, dt)
     H = 2 * impedance * transfer(bar, s, np.array([bar.length]))[1][0]
+    H *= np.exp(-s * late_by(column, "jointed"))
     inverse = H.conj() / np.maximum(np.abs(H), water_level * np.abs(H).max()) ** 2
     found = np.fft.irfft(np.fft.rfft(surface.values, count) * inverse, count)
     earlier = time[0] + dt * np.arange(-lead, n)

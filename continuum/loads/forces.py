@@ -9,7 +9,7 @@ from scipy.sparse import csr_matrix
 
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.incident import FaceTractions, FreeField, IncidentField, free_field, tractions
-from jointwave.cases.loads import load_history, step_means, velocity_of
+from jointwave.cases.loads import late_load, step_means, velocity_of
 from jointwave.cases.material.quiet_sides import base_traction
 from jointwave.cases.partition.shape import BESIDE, loaded_lines, shape_of
 from jointwave.cases.scene_type import AnyScene
@@ -65,10 +65,10 @@ def released(scene: AnyScene, body: Body) -> np.ndarray | None:
     return forces_on(body, walls, walls.normal @ scene.prestress.tensor)
 
 
-def pushes(scene: AnyScene, body: Body) -> list[Push]:
-    """Return the loads of a scene that are forces."""
+def pushes(scene: AnyScene, body: Body, model: str) -> list[Push]:
+    """Return the loads of a scene that are forces; model : "jointed" or "equivalent"."""
     if scene.is_column:
-        return [Push(end_force(scene, body, one), load_history(scene)) for one in scene.pushes]
+        return [Push(end_force(scene, body, one), late_load(scene, model)) for one in scene.pushes]
     of_kind = {"pressure": _pressure, "force": _force, "base": _base}
     return [
         Push(of_kind[one.kind](scene, body, one), velocity_of(one, one.amplitude))

@@ -10,7 +10,7 @@ import numpy as np
 
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.measure import along_and_across, frames_of
-from jointwave.cases.loads import block_load
+from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.partition.pillar import SIDES
@@ -96,7 +96,7 @@ def _spring(cut: Blocks, name: str, rock: JointedRock, share: float, rotations: 
 def _push(scene: Scene, cut: Blocks) -> Pattern:
     """Return the load on the start face as forces."""
     load, dim, face = scene.load, cut.body.dim, facets_on(cut, SIDES, SIDES[:1])[0]
-    history, direction, area = block_load(scene), np.array(load.direction), scene.pillar.area
+    history, direction, area = late_load(scene), np.array(load.direction), scene.pillar.area
     arm = cut.boundary.centroid[face] - cut.centroid[0]
     if load.arm is not None:  # a couple
         across = np.eye(3)[2 if abs(direction[2]) < LEAN else 0]

@@ -21,7 +21,7 @@ def first_break(scene, after):
     """Return the joints (int array) and the time (s) of the first step at which any of them is
     open beyond where it reaches its strength; none before `after` (s)."""
     _, problem, choice, _ = plan_of(scene, "jointed", dim=1)
-    own, dt = in_time(scene, problem, choice.time, None), choice.time.dt
+    own, dt = in_time(scene, problem, choice.time, None, "jointed"), choice.time.dt
     steps, start = Leapfrog(own, dt, 1), int(after / choice.time.dt)
     joints = problem.body.joints
     limit = problem.law.tensile_strength / problem.law.normal_stiffness

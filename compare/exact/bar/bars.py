@@ -20,7 +20,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.loads import load_history
+from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.sampling import sample_times
@@ -87,7 +87,8 @@ def _solver(
         """Return stress, velocity and displacement of the scene's bar."""
         times, bar = sample_times(scene), bar_of(scene, resolved)
         places = scene.record.stress, scene.record.velocity
-        found = bounded(bar, load_history(scene), times, *places, scene.load.time_scale)
+        load = late_load(scene, "jointed" if resolved else "equivalent")
+        found = bounded(bar, load, times, *places, scene.load.time_scale)
         names = "stress", "velocity", "displacement"
         waves, errors = (dict(zip(names, of, strict=True)) for of in found)
         waves["stress"] = waves["stress"] + static_stress(scene)

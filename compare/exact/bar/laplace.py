@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from jointwave.cases.histories import LoadHistory, Recorded, Step
+from jointwave.cases.histories import Late, LoadHistory, Recorded, Step
 from jointwave.cases.size import require
 from jointwave.compare.exact.bar.images import Front
 from jointwave.compare.exact.bar.transfer import Bar, End, nodes_of, transfer
@@ -104,6 +104,8 @@ def _transform(load: LoadHistory, window: Window) -> np.ndarray:
 
 def _jumps(load: LoadHistory) -> list[tuple[float, float]]:
     """Return the times (s) and heights (Pa) of a load's jumps."""
+    if isinstance(load, Late):
+        return [(at + load.by, jump) for at, jump in _jumps(load.history)]
     if isinstance(load, Step):
         return [(0.0, load.amplitude)]
     if isinstance(load, Recorded):

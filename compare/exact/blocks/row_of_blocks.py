@@ -24,14 +24,14 @@ import xarray as xr
 
 from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import Step
-from jointwave.cases.loads import with_walls
+from jointwave.cases.loads import late_load, with_walls
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.events import NOISE, integrate
 from jointwave.compare.exact.blocks.pillar import own_freedoms, system_of
 from jointwave.compare.exact.blocks.system import BlockSystem
-from jointwave.compare.exact.conditions import DAMPED, LAYERS, drive, holds
+from jointwave.compare.exact.conditions import DAMPED, LAYERS, holds
 from jointwave.compare.exact.linear import bound, twins
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.dataset import dataset
@@ -91,12 +91,12 @@ def solve(scene: Scene) -> xr.Dataset:
     about: dict[str, Any] = {}
     name, known = (IN_SPACE if is_spatial(scene) else AXIAL).name, len(times)
     if len(one.one_sided):
-        of = one, drive(scene), times, scene.load.time_scale
+        of = one, late_load(scene), times, scene.load.time_scale
         motions = [integrate(*of, noise) for noise in (0.0, NOISE)]
         states = [motion.states for motion in motions]
         name, known, about["events"] = NO_TENSION.name, _known(one, *states), motions[0].events
     else:
-        driven = twins(one.matrix, one.load, drive(scene), times)
+        driven = twins(one.matrix, one.load, late_load(scene), times)
         states = [*(driven + twins(one.matrix, one.steady, Step(1.0), times))]
     if known < len(times):
         about["known_until"] = float(times[known - 1])
@@ -138,7 +138,7 @@ def receivers(scene: Scene, one: BlockSystem, states: np.ndarray) -> Waves:
     between the block centres, and constant beyond the outermost.
     """
     (sections, points), c = reads(scene), len(own_freedoms(scene))
-    forces = contact_forces(one, states, drive(scene).value(sample_times(scene)))
+    forces = contact_forces(one, states, late_load(scene).value(sample_times(scene)))
     forces, rate, moved = (
         (matrix @ x.reshape(len(x), -1, c)[:, : matrix.shape[1]]).transpose(1, 2, 0)
         for matrix, x in (

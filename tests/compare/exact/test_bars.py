@@ -264,7 +264,8 @@ def test_one_damped_layer_damps_slow_waves_alike_in_all_three_models(pillar, mis
 @pytest.mark.parametrize("start", ["matched", "quiet"])
 def test_a_load_on_a_start_that_absorbs_enters_blocks_in_time(pillar, misfit, start):
     """Half or a quarter of a block too early, blocks would be of first order: their dispersion is
-    of second, 1.9 % at 20 blocks in the shortest part of the wave."""
+    of second, 1.9 % at 20 blocks in the shortest part of the wave. Half a joint too early, jointed
+    rock would be 6 % or 3 % from the homogenised bar, and of first order, too."""
     off = []
     for block in (1.0, 0.5):
         scene = pillar(
@@ -277,5 +278,6 @@ def test_a_load_on_a_start_that_absorbs_enters_blocks_in_time(pillar, misfit, st
             record={"stress": [0.0, 15.0], "velocity": []},
             time__duration=0.08,
         )
-        off.append(misfit(solve("lattice", scene), solve("jointed-bar", scene), "stress"))
-    assert off[1] < off[0] / 3.5 < 0.02 / 3.5
+        blocks, rock, bar = (solve(n, scene) for n in ("lattice", "jointed-bar", "equivalent-bar"))
+        off.append([misfit(blocks, rock, "stress"), misfit(rock, bar, "stress")])
+    assert (np.array(off[1]) < np.array(off[0]) / 3.5).all() and np.max(off) < 0.03

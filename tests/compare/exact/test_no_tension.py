@@ -8,14 +8,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from jointwave.cases import Scene
-from jointwave.cases.loads import load_history
+from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.events import integrate
 from jointwave.compare.exact.blocks.pillar import system_of
 from jointwave.compare.exact.blocks.row_of_blocks import receivers
-from jointwave.compare.exact.conditions import drive
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
 ENDS = [("free", "free"), ("free", "fixed"), ("quiet", "fixed"), ("free", "quiet")]
@@ -63,7 +62,7 @@ def random_chain(seed, folder):
 def of_slopes(scene, times):
     """Return displacements and velocities [n, 2 N] of a chain by DOP853, assembled here, from the
     scene: its steps shrink where a joint opens or closes, and end where the load has a break."""
-    p, load = calibrate(scene), load_history(scene)
+    p, load = calibrate(scene), late_load(scene)
     k, wall = p.stiffness * p.area, 2 * p.regular_stiffness * p.area
     eta = 0.0 if p.joint_time_constant is None else p.joint_time_constant
     pressed = (scene.prestress.normal if scene.prestress else 0.0) * p.area
@@ -99,7 +98,7 @@ def test_chains_that_open_and_close_are_those_of_a_tight_ode_solver(seed, tmp_pa
     """Its 1e-11 a step grows as any small difference, to 1e-8 of the motion."""
     scene = random_chain(seed, tmp_path)
     model, times = system_of(scene), sample_times(scene)
-    states = integrate(model, drive(scene), times, scene.load.period).states
+    states = integrate(model, late_load(scene), times, scene.load.period).states
     expected = np.split(of_slopes(scene, times), 2, axis=1)
     for matrix, motion in zip((model.displacement, model.velocity), expected, strict=True):
         assert np.linalg.norm(states @ matrix.T - motion) < 1e-6 * np.linalg.norm(motion)
@@ -116,7 +115,7 @@ def test_the_bound_of_the_error_holds(seed, tmp_path):
     scene = random_chain(seed, tmp_path)
     model, times, found = system_of(scene), sample_times(scene), row_of_blocks.solve(scene)
     finer = integrate(
-        model, drive(scene), times.astype(np.longdouble), scene.load.period
+        model, late_load(scene), times.astype(np.longdouble), scene.load.period
     ).states.astype(float)
     known = int((times <= found.attrs.get("known_until", np.inf)).sum())
     for name, exact in receivers(scene, model, finer).items():
@@ -144,7 +143,7 @@ def test_the_time_is_said_from_which_bouncing_is_chaotic(tmp_path):
     model, times, found = system_of(scene), sample_times(scene), row_of_blocks.solve(scene)
     until = found.attrs["known_until"]
     assert 0.03 < until < 0.09
-    other = integrate(model, drive(scene), times, 0.002, noise=500.0, seed=7).states
+    other = integrate(model, late_load(scene), times, 0.002, noise=500.0, seed=7).states
     stress = receivers(scene, model, other)["stress"]
     error, known = stress[0] - found.stress.values[0], times <= until
     assert np.sqrt((error[known] ** 2).mean()) < found.stress_error.values[0]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.cases import Scene
+from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.bar import images, modes
@@ -11,7 +12,6 @@ from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.events import integrate
 from jointwave.compare.exact.blocks.pillar import system_of
 from jointwave.compare.exact.blocks.row_of_blocks import receivers
-from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.joint import one_joint
 
 QUANTITIES = ("stress", "velocity", "displacement")
@@ -68,7 +68,7 @@ def test_of_the_row_of_blocks(scene, seed):
         across = {"direction": [0.6, 0, 0.8], "at": [0.1, 0]}
         table["load"] = {"shape": "step", "amplitude": 1e6} | across
     at = Scene.model_validate(table)
-    model, times, signal = system_of(at), sample_times(at), drive(at)
+    model, times, signal = system_of(at), sample_times(at), late_load(at)
     fine = integrate(model, signal, times.astype(np.longdouble), at.load.period).states
     found, exact = row_of_blocks.solve(at), receivers(at, model, fine.astype(float))
     for name, waves in exact.items():

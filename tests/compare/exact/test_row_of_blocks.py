@@ -10,13 +10,12 @@ from scipy.signal import lsim
 from closed_forms import cantilever, leapfrog
 from closed_forms.square_face import face_points
 from jointwave.cases.histories import Recorded
-from jointwave.cases.loads import load_history
+from jointwave.cases.loads import late_load, load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.compare.exact.bar import modes
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.pillar import system_of
-from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.linear import twins
 
 ACROSS = {"direction": [1.0, 0.0, 0.0]}
@@ -38,7 +37,7 @@ class Points:
     contact by its points."""
 
     def __init__(self, scene):
-        p, self.scene, self.load = calibrate(scene), scene, drive(scene)
+        p, self.scene, self.load = calibrate(scene), scene, late_load(scene)
         self.points = face_points(0.5, scene.joints.contact_points, scene.joints.point_rule)
         self.K, self.C = np.zeros((2, 36, 36))
         self.mass = np.tile(p.block_mass * np.array([1, 1, 1, *[0.5**2 / 6] * 3]), 4)

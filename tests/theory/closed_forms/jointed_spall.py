@@ -8,7 +8,7 @@ see `spall`.
 import numpy as np
 
 from closed_forms.spall import Spall
-from jointwave.cases.loads import load_history
+from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
@@ -21,7 +21,7 @@ def jointed_spall(scene: Scene) -> Spall | None:
     p, times = calibrate(scene), sample_times(scene)
     if p.tensile_strength is None:
         raise ValueError("no joint has a tensile strength")
-    load, period = load_history(scene), scene.load.time_scale
+    load, period = late_load(scene, "jointed"), scene.load.time_scale
     (stress, _, _), _ = bounded(
         bar_of(scene, resolved=True), load, times, p.joint_y.tolist(), [], period
     )

@@ -14,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.histories import LoadHistory
+from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.blocks.pillar import system_of
 from jointwave.compare.exact.blocks.row_of_blocks import contact_forces
-from jointwave.compare.exact.conditions import drive
 from jointwave.compare.exact.linear import twins
 
 POINTS = 1001  # of a grid of places or times
@@ -74,7 +74,7 @@ def lattice_spall(scene: Scene) -> Spall | None:
     p, model, times = calibrate(scene), system_of(scene), sample_times(scene)
     if p.tensile_strength is None:
         raise ValueError("no joint has a tensile strength")
-    states = twins(model.matrix, model.load, drive(scene), times)[0]
+    states = twins(model.matrix, model.load, late_load(scene), times)[0]
     pulled = -contact_forces(model, states)[:, 1 : scene.block_count] / p.area - p.tensile_strength
     broken = (pulled >= 0).any(axis=1)
     if not broken.any():
