@@ -10,6 +10,8 @@ from jointwave.joints import tangent as tangents
 from jointwave.joints.law import History, law_of, parts_of, table_of, traction
 
 DT = 1e-5
+RATE = {"direct_effect": 0.01, "evolution_effect": 0.015, "critical_slip_distance": 1e-3}
+RATE |= {"reference_rate": 1e-6, "initial_state": 1.0}
 
 
 class Point(NamedTuple):

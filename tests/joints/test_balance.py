@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from jointwave.joints.dilation import lift
 from jointwave.joints.law import History, Law
 from jointwave.joints.tangent import tangent
-from tests.joints.points import DT, at_point, march, some
+from tests.joints.points import DT, RATE, at_point, march, some
 
 PLAIN = Law(9e9, shear_stiffness=3e9)
 DAMPED = {"normal_viscosity": 1e5, "shear_viscosity": 3e4}
@@ -27,13 +27,7 @@ LAWS = {
     "closure": COULOMB._replace(maximum_closure=3e-4, rock_compliance=0.0),
     "weakening": COULOMB._replace(dynamic_friction=0.2, weakening_distance=2e-4, **DAMPED),
     "dilation": COULOMB._replace(dilation=0.2, dilation_distance=2e-4, **DAMPED),
-    "rate and state": COULOMB._replace(
-        direct_effect=0.01,
-        evolution_effect=0.015,
-        critical_slip_distance=1e-3,
-        reference_rate=1e-6,
-        initial_state=1.0,
-    ),
+    "rate and state": COULOMB._replace(**RATE),
 }
 #: Jumps (gap, slips), m: 0.1 mm.
 unit = some(-1, 1).map(lambda x: 1e-4 * x)

@@ -11,6 +11,7 @@ import pytest
 from jointwave.joints.formula import formula
 from jointwave.joints.law import History, Law, law_of, parts_of, table_of, traction
 from jointwave.joints.tangent import tangent
+from tests.joints.points import RATE
 
 N, DT, HISTORY = 64, 1e-5, History()
 ELASTIC = Law(9e9, shear_stiffness=3e9)
@@ -21,13 +22,7 @@ LAWS = {
     "dilation": WHOLE._replace(
         dynamic_friction=0.2, weakening_distance=2e-3, dilation=0.2, dilation_distance=2e-3
     ),
-    "rate and state": WHOLE._replace(
-        direct_effect=0.01,
-        evolution_effect=0.015,
-        critical_slip_distance=1e-3,
-        reference_rate=1e-6,
-        initial_state=1.0,
-    ),
+    "rate and state": WHOLE._replace(**RATE),
     "all of softening": WHOLE._replace(carries_tension=None),
 }
 
