@@ -71,11 +71,10 @@ def _properties(scene: Scene) -> Properties:
 def _at_ends(scene: Scene, rock: JointedRock) -> tuple[float, float]:
     """Return the stress that closes joints at the start and the end before any load, Pa, including
     the weight if an absorbing end alone bears it."""
-    gravity, weight = scene.gravity, 0.0
+    gravity, weight, (start, end) = scene.gravity, 0.0, scene.bears
     if gravity is not None and gravity.static and "fixed" not in dict(scene.ends).values():
-        along = abs(gravity.direction[1])
-        weight = rock.density * gravity.acceleration * along * scene.pillar.length
-    start, end = scene.bears
+        along = gravity.acceleration * abs(gravity.direction[1])
+        weight = rock.density * along * scene.pillar.length
     return rock.prestress + start * weight, rock.prestress + end * weight
 
 

@@ -141,11 +141,8 @@ class JointedRock:
         intact = self.intact_modulus or inf
         own = joint_stiffness(self.modulus, intact, self.spacing)
         own *= (1 + stress / (own * self.closes)) ** 2
-        return self.but(modulus=equivalent_modulus(own, intact, self.spacing))
-
-    def but(self, **changed: float) -> "JointedRock":
-        """Return this rock with changed attributes."""
-        return JointedRock(**{f.name: getattr(self, f.name) for f in fields(JointedRock)} | changed)
+        same = {one.name: getattr(self, one.name) for one in fields(JointedRock)}
+        return JointedRock(**same | {"modulus": equivalent_modulus(own, intact, self.spacing)})
 
     def _half_block(self, mass: float, intact: float | None) -> float:
         """Return the stiffness of half a block (Pa/m) from the moduli (Pa) of rock mass and intact

@@ -1,7 +1,7 @@
 """Properties of a pillar: rock between its joints, and stiffness, damping and strength of each."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import reduce
 
 import numpy as np
@@ -127,12 +127,12 @@ class Properties(JointedRock, Strength):
     @property
     def at_start(self) -> JointedRock:
         """The rock at the start."""
-        return self.each[0].but(prestress=self.end_stress[0])
+        return replace(self.each[0], prestress=self.end_stress[0])
 
     @property
     def at_end(self) -> JointedRock:
         """The rock at the end."""
-        return self.each[-1].but(prestress=self.end_stress[1])
+        return replace(self.each[-1], prestress=self.end_stress[1])
 
     @property
     def joint_y(self) -> np.ndarray:

@@ -45,11 +45,6 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
     return Answer.unless(*beyond, *against)
 
 
-def static_stress(scene: Scene) -> float:
-    """Return the stress in every section before the load, Pa, without gravity."""
-    return scene.prestress.normal if scene.prestress else 0.0
-
-
 def has_thick_layer(scene: Scene) -> bool:
     """Return whether a soft layer is rock with a thickness, not a joint."""
     return any(layer.thickness is not None for layer in scene.soft_layers)

@@ -27,7 +27,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.laplace import bounded
 from jointwave.compare.exact.bar.transfer import Bar, end_of, rocks
-from jointwave.compare.exact.conditions import DAMPED, holds, static_stress
+from jointwave.compare.exact.conditions import DAMPED, holds
 from jointwave.compare.solvers.record import Answer, Kind, Line, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
@@ -91,7 +91,7 @@ def _solver(
         found = bounded(bar, load, times, *places, scene.load.time_scale)
         names = "stress", "velocity", "displacement"
         waves, errors = (dict(zip(names, of, strict=True)) for of in found)
-        waves["stress"] = waves["stress"] + static_stress(scene)
+        waves["stress"] = waves["stress"] + calibrate(scene).prestress
         return dataset(scene, name, times, waves, errors=errors)
 
     applies_to = partial(applies, resolved=resolved)

@@ -24,7 +24,7 @@ from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.conditions import holds, static_stress
+from jointwave.compare.exact.conditions import holds
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
@@ -58,7 +58,7 @@ def solve(scene: Scene) -> xr.Dataset:
     bar = Front(scene.pillar.length, p.bar_speed, p.impedance, *reflects)
     found = bar.waves(entering(scene), times, record.stress, record.velocity)
     waves = dict(zip(("stress", "velocity", "displacement"), found, strict=True))
-    waves["stress"] = waves["stress"] + static_stress(scene)
+    waves["stress"] = waves["stress"] + calibrate(scene).prestress
     return dataset(scene, SOLVER.name, times, waves)
 
 

@@ -22,7 +22,6 @@ from jointwave.compare.exact.blocks.system import (
     relative,
     resistance,
 )
-from jointwave.compare.exact.conditions import static_stress
 
 
 def system_of(scene: Scene) -> BlockSystem:
@@ -122,7 +121,7 @@ def _at_start(scene: Scene, contacts: Contacts) -> tuple[np.ndarray, np.ndarray,
     mass, held = bodies(scene, held=True)
     count, c = len(mass) - 2, len(own)
     fall, initial = np.zeros(6), np.zeros((len(contacts.area), 6))
-    initial[: count + 1, 1] = static_stress(scene) * scene.pillar.area
+    initial[: count + 1, 1] = calibrate(scene).prestress * scene.pillar.area
     initial = initial[:, own]
     if gravity is not None:
         fall[:3] = gravity.acceleration * np.array(gravity.direction)

@@ -26,7 +26,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.law_parts import UNLIMITED
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import entering
-from jointwave.compare.exact.conditions import holds, static_stress
+from jointwave.compare.exact.conditions import holds
 from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
 from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
@@ -101,7 +101,7 @@ def the_joint(scene: Scene, p: Properties) -> ClosingJoint:
         stiffness=float(1 / own),
         maximum=float(p.maximum_closure[j]),
         without=float(1 / p.regular_stiffness - p.rock_compliance[j]),
-        prestress=static_stress(scene),
+        prestress=calibrate(scene).prestress,
     )
 
 

@@ -24,7 +24,7 @@ from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import entering
-from jointwave.compare.exact.conditions import holds, static_stress
+from jointwave.compare.exact.conditions import holds
 from jointwave.compare.exact.linear import bound, twins
 from jointwave.compare.solvers.record import Answer, Rock, Solver, thin
 from jointwave.results.dataset import dataset
@@ -86,7 +86,7 @@ def behind_and_before(
             around(joint_y, p.bar_speed, one, load, times, places)
             for places in (scene.record.stress, scene.record.velocity)
         )
-        stress = stress[0] + stress_back[0] + static_stress(scene)
+        stress = stress[0] + stress_back[0] + calibrate(scene).prestress
         found.append([stress, *((motion - motion_back) / p.impedance)])
     names = "stress", "velocity", "displacement"
     waves, bounds = (dict(zip(names, of, strict=True)) for of in (found[0], map(bound, *found)))

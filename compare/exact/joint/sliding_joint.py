@@ -25,7 +25,7 @@ from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.law_parts import PARTS, UNLIMITED
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import entering
-from jointwave.compare.exact.conditions import LAYERS, holds, static_stress
+from jointwave.compare.exact.conditions import LAYERS, holds
 from jointwave.compare.exact.joint import rate_state_joint
 from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.joint.slip_phases import TOLERANCES, Passed, SlipJoint
@@ -56,7 +56,7 @@ def applies(scene: Scene) -> Answer:
         (np.count_nonzero(slips) != 1, "not exactly one joint can slip"),
         (bool(coheres), "the rate-and-state joint has cohesion"),
         (
-            rated is not None and static_stress(scene) <= 0,
+            rated is not None and calibrate(scene).prestress <= 0,
             "the rate-and-state joint has no normal stress",
         ),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
@@ -77,7 +77,7 @@ def solve(scene: Scene) -> xr.Dataset:
         name: bound(x, twin[name]) + ROUND_OFF * np.abs(x).max(initial=0.0)
         for name, x in found.items()
     }
-    stress = np.full((len(scene.record.stress), len(times)), static_stress(scene))
+    stress = np.full((len(scene.record.stress), len(times)), calibrate(scene).prestress)
     stress = stress + found.pop("stress", 0.0)
     waves = {name: x.swapaxes(1, 2) for name, x in found.items()}
     waves |= {"stress": stress, "rotation": np.zeros_like(waves["velocity"])}
@@ -92,7 +92,7 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
     passed: rate_state_joint.RateStateWave | Passed
     if p.direct_effect is not None:
         own = (float(getattr(p, name)[_slips(p)][0]) for name in ("friction", *RATE_PARAMETERS))
-        rated = rate_state_joint.RateJoint(static_stress(scene), *own)
+        rated = rate_state_joint.RateJoint(calibrate(scene).prestress, *own)
         rated = rated._replace(compliance=joint.compliance)
         rest, tolerance = joint.y / p.shear_speed, rate_state_joint.TOLERANCES[which]
         passed = rate_state_joint.RateStateWave(rated, Z, load, times[-1], tolerance, rest)
@@ -116,7 +116,7 @@ def _waveforms(scene: Scene, which: int) -> dict[str, Any]:
 
 def the_joint(scene: Scene, p: Properties) -> SlipJoint:
     """Return the only joint that can slip, with its Mohr-Coulomb strength under the prestress."""
-    j, normal = int(np.flatnonzero(_slips(p))[0]), static_stress(scene)
+    j, normal = int(np.flatnonzero(_slips(p))[0]), calibrate(scene).prestress
 
     def own(every: np.ndarray | None, without: float) -> float:
         return without if every is None else float(every[j])
