@@ -109,7 +109,7 @@ def test_base_of_a_falling_bar_gives_way_as_its_dashpot_does():
 
 @pytest.mark.parametrize("solver", ["dem", "spatial-lattice"])
 @pytest.mark.parametrize("static", [True, False])
-def test_matched_end_bears_a_row_across_its_axis(solver, static):
+def test_matched_end_bears_a_row_across_its_axis(solver, static, plain):
     """A cantilever of weight M g leans on its matched end: shear M g / A there, from the start."""
     changes = quiet(PILLAR) | {
         "pillar.length": 5.0, "record.stress": [5.0], "record.velocity": [0.5],
