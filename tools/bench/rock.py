@@ -56,7 +56,7 @@ def scene_of(case: str, size: float | None = None, duration: float = 0.01) -> Ro
 def engine_of(scene: RockMass, model: str = "jointed") -> Engine:
     """Return the continuum engine on a scene."""
     plan = plan_of(scene, model)
-    problem = in_time(scene, plan.problem, plan.choice.time, None)
+    problem = in_time(scene, plan.problem, plan.choice.time, None, model)
     time = plan.choice.time
     return Engine(plan, problem, Leapfrog(problem, time.dt, time.samples, energy=False))
 
