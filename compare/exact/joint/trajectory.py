@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from jointwave.cases.errors import UnstableError
 from jointwave.cases.histories import LoadHistory
 
 SAMPLES = 2001  # of a load, to find its peak
@@ -26,7 +27,8 @@ def peak_of(load: LoadHistory, end: float) -> float:
 class Trajectory:
     """The solution of x' = rate(t, x) at any time, from the state `start` [m] at the first edge.
 
-    tolerance : of each step, relative. scale : size of the state, float array [m] or float.
+    tolerance : of each step, relative. scale : size of the state, float array [m] or float. Raises
+    UnstableError where the state jumps, as at a joint whose friction falls faster than it unloads.
     """
 
     def __init__(
@@ -47,6 +49,8 @@ class Trajectory:
                 found = solve_ivp(
                     rate, part, now, "DOP853", dense_output=True, atol=tolerance * scale, **steps
                 )
+            if not found.success:
+                raise UnstableError(f"the joint snaps {found.t[-1]:.4g} s after the wave meets it")
             self._parts.append((*part, found.sol))
             now = found.y[:, -1]
 

@@ -8,6 +8,7 @@ from scipy.integrate import trapezoid
 from scipy.optimize import brentq
 
 from closed_forms.one_joint import slip_coefficients
+from jointwave.cases.errors import UnstableError
 from jointwave.cases.histories import Recorded, Ricker, Sine, Step
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
@@ -211,6 +212,20 @@ def test_steady_slip_of_rate_and_state_friction(compliance):
     assert stress[-1] == pytest.approx(1e6 - Z * rate / 2, rel=1e-7)
     slip = 2 * (1e6 * times - impulse) / Z
     assert np.diff(slip)[-1] / np.diff(times)[-1] == pytest.approx(rate, rel=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.8, 2.0])
+def test_rate_and_state_friction_that_falls_faster_than_the_joint_unloads(share):
+    """At rates far above steady state friction falls by b n / D_c per slip, and slip runs away if K
+    is less (Rubin & Ampuero 2005). Otherwise the joint carries no more than the wave brings."""
+    joint = RATED._replace(evolution=0.025, state=1e4)
+    joint = joint._replace(compliance=share * joint.distance / (joint.evolution * joint.pressure))
+    times, of = np.linspace(0.0, 0.03, 301), (joint, Z, Sine(2e6, 0.04), 0.03, 1e-11)
+    if share > 1:
+        with pytest.raises(UnstableError, match="the joint snaps"):
+            RateStateWave(*of)
+    else:
+        assert np.abs(RateStateWave(*of)(times)[0]).max() <= 2e6
 
 
 def test_the_impulse_of_rate_and_state_friction_is_that_of_its_stress():
