@@ -201,10 +201,11 @@ def delay(one: np.ndarray, other: np.ndarray, dt: float) -> float:
 def mean_period(waveform: np.ndarray, dt: float) -> float:
     """Return 2 pi ||s|| / ||ds/dt||, s: the period of a sine, the mean period of any other wave.
 
-    This is 2 pi sqrt(m0 / m2) of the spectral moments, T_m02 of wave statistics.
+    This is 2 pi sqrt(m0 / m2) of the spectral moments, T_m02 of wave statistics. Differences of
+    samples are 2 sin(pi dt / T) of a sine, however coarse.
     """
-    rate = np.linalg.norm(np.gradient(waveform, dt))
-    return float(2 * np.pi * np.linalg.norm(waveform) / rate) if rate > 0 else np.nan
+    size, half = np.linalg.norm(waveform), np.linalg.norm(np.diff(waveform)) / 2
+    return float(np.pi * dt / np.arcsin(half / size)) if half > 0 else np.nan
 
 
 def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
