@@ -69,12 +69,12 @@ def wave_speed(
     axis: str | None = None,
 ) -> float:
     """Return the speed of a wave from one receiver to another, m/s: their distance over the delay
-    of best correlation; negative if the wave reaches the other one first.
+    of best correlation; negative if the wave reaches the other one first, infinite without delay.
 
     one, other : receivers by number. quantity, axis : of the waveforms, see `waveforms`.
     """
     way, late = _passage(waveforms(result, quantity, axis), one, other)
-    return way / late
+    return way / late if late else np.inf
 
 
 def transfer_function(

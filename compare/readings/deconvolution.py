@@ -47,10 +47,13 @@ def deconvolve(scene: AnySource, surface: xr.DataArray, water_level: float = 1e-
         truncated record distorts the end of the result.
     water_level : w, relative to the largest |H|: frequencies with a lower |H| are attenuated.
 
-    Raises SceneError if the scene is not a pillar or the column is not linear.
+    Raises SceneError if the scene is not a pillar, the column not linear, or the record not one
+    waveform.
     """
     from scipy.fft import next_fast_len
 
+    if surface.dims != ("time",):
+        raise SceneError("deconvolve", "surface", [*surface.dims], "must be over time only")
     column = pillar_of(load(scene), "deconvolve")
     bar, impedance = _column(column)
     n, time = surface.sizes["time"], surface.time.values

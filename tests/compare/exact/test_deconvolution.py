@@ -105,3 +105,9 @@ def test_a_column_that_is_not_linear_is_refused(tables, words):
     scene = column(**tables)
     with pytest.raises(SceneError, match=f"cannot be deconvolved: {words}"):
         deconvolve(scene, xr.DataArray(np.zeros(3), {"time": [0.0, 0.1, 0.2]}))
+
+
+def test_a_record_of_several_receivers_or_directions_is_refused():
+    scene = column()
+    with pytest.raises(SceneError, match="must be over time only"):
+        deconvolve(scene, solve("equivalent-bar", scene).velocity)

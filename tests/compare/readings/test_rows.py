@@ -88,6 +88,12 @@ def test_a_bar_has_its_speed_and_what_comes_back_a_negative_one(bar):
     assert found.phase_speed.values == pytest.approx(-speed, rel=2e-6)
 
 
+def test_a_wave_that_meets_two_receivers_at_once_is_infinitely_fast_along_them():
+    t = np.linspace(0.0, 0.2, 201)
+    both = np.tile(np.exp(-(((t - 0.05) / 0.008) ** 2)), (2, 1))
+    assert wave_speed((t, both, [0.0, 10.0])) == np.inf
+
+
 def test_a_pure_delay_transfers_a_falling_phase(bar):
     transfer = transfer_function(bar[0], 0, 4).sel(frequency=slice(30, 250))
     exact = np.exp(-2j * np.pi * transfer.frequency.values * 4.0 / bar[1])
