@@ -42,7 +42,7 @@ class List(SimpleNamespace):
 
 @options.command("explain:explain")
 class Explain(options.SceneOptions):
-    """Print the contents of a scene, its time steps, and the solvers that apply.
+    """Print what a scene has, its time steps, and what can solve it.
 
     These are its rock and blocks, incoming waves, active effects, each engine's time step and what
     limits it, the solutions that apply with their options, and the references. Nothing is run.
@@ -124,7 +124,7 @@ class Run(options.PrintOptions, options.SweepOptions):
 
 @options.command("compare:compare")
 class Compare(options.PrintOptions, options.StoredOptions, options.SweepOptions):
-    """Solve a scene with all solvers that apply; print their misfits, and why they differ.
+    """Solve a scene by all that applies; say how far apart, and why.
 
     Prints a line per engine: its worst misfit from the finest physics, with variant and receiver,
     its reference, its own numerical error, the stepping time, and the verdict. --all, --json, --out
@@ -180,7 +180,7 @@ class WaveOptions(options.StoredOptions):
 
 @options.command("pictures:view")
 class View(WaveOptions):
-    """Show a scene solved by both engines, displaced and coloured by the wave.
+    """Show a scene by both engines, displaced and coloured by the wave.
 
     Pillars and scenes in space are shown in three dimensions, other rock masses in their plane, on
     one colour scale.

@@ -114,7 +114,7 @@ def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):
         assert np.abs(force).max() < 1e-13 * np.abs(stiffness).max() * np.abs(motion).max()
     result = simulate(scene, incident=incident(scene))
     assert energy_residual(result) < 1e-10
-    (push,) = pushes(scene, body)
+    (push,) = pushes(scene, body, "jointed")
     assert np.abs(push.share).max() > 0.1
     assert np.abs(push.share.reshape(-1, 2).sum(axis=0)).max() < 1e-12
 
