@@ -15,7 +15,6 @@ import tomllib
 import warnings
 from contextlib import suppress
 from copy import deepcopy
-from importlib.machinery import PathFinder
 from pathlib import Path
 from resource import RUSAGE_SELF, getpagesize, getrusage
 from threading import current_thread, main_thread
@@ -28,19 +27,6 @@ from jointwave import cases
 from jointwave.cases.errors import InterruptedRun
 from jointwave.numerics import jit
 from jointwave.results.arrays import copied, fill
-
-
-class AsElsewhere:
-    """Finds the project's modules as ordinary processes do, not as pytest does for a plugin's
-    package, whose assertions it rewrites: then names of files are other strings in the code, of
-    which numba makes other keys, and every process that a test starts compiles its kernels anew."""
-
-    @staticmethod
-    def find_spec(name, path=None, target=None):
-        return PathFinder.find_spec(name, path, target) if name.startswith("jointwave.") else None
-
-
-sys.meta_path.insert(0, AsElsewhere)
 
 # The first example compiles a kernel, which no deadline foresees. Every run has the same examples;
 # JOINTWAVE_EXAMPLES=night looks for a thousand others of every test.

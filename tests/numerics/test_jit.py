@@ -148,12 +148,15 @@ for name, changes in (("guo-li-2002/fig-03", short | inclined),
 
 @pytest.fixture
 def start(tmp_path):
-    """Start a program that runs engines, whose cache of kernels is empty at first."""
+    """Start a program that runs engines, whose cache of kernels is empty at first; the first one
+    compiles the sources of Python too, later ones load their bytecode."""
     usual = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fenics"
     usual.mkdir(parents=True, exist_ok=True)
     (tmp_path / "fenics").symlink_to(usual)  # forms are compiled as ever
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
-    environment.pop("NUMBA_CACHE_DIR", None)
+    environment["PYTHONPYCACHEPREFIX"] = str(tmp_path / "bytecode")
+    for name in ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE"):
+        environment.pop(name, None)
 
     def started(program=PROGRAM):
         (tmp_path / "program.py").write_text(program)
