@@ -36,7 +36,7 @@ CHEAP = 12_000_000  # instants times nodes that take about half a second
 MOST_TRIPS = 5000  # round trips in front of the first joint
 SAFETY = 2.0  # factor on the difference of the two inversions
 NEAR = 17  # fine steps within which the largest difference is taken
-FLOOR = 4e-9  # error by wrapping and amplified round-off, over a quantity's peak
+FLOOR = 8e-9  # error by wrapping and amplified round-off, over a quantity's peak
 
 
 def bounded(
