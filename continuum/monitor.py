@@ -9,15 +9,8 @@ from jointwave.continuum.scene import SceneBody
 from jointwave.continuum.space.evaluation import nodes_of_cells, places_of_nodes
 from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
+from jointwave.numerics import small_motion
 from jointwave.numerics.divergence import Guarded, check, guard, speed_that
-from jointwave.numerics.small_motion import (
-    LARGEST,
-    Moved,
-    farthest,
-    may_overlap,
-    overlapping,
-    refuse_large_motion,
-)
 
 IN_PERIOD = 50  # least number of samples of forces in the period of a pulse
 
@@ -45,18 +38,20 @@ class Monitor:
         energy = steps.samples.energy if exact else None
         check(self.guard, self.run, (first, last), energy, speed, body.x)
         t = last * self.time.stride * self.time.dt
-        refuse_large_motion(self.scene, self.run.engine, self._moved, t, first)
+        small_motion.refuse_large_motion(self.scene, self.run.engine, self._moved, t, first)
 
-    def _moved(self) -> Moved | None:
+    def _moved(self) -> small_motion.Moved | None:
         """Return the joint with the largest motion over the size of its smaller block, or blocks
         that overlap without a contact; None without joints."""
         u = self.steps.u
         found = farthest_joint(self.found, u)
-        if not self.scene.in_plane or (found is not None and found.by > LARGEST * found.size):
+        if not self.scene.in_plane or (
+            found is not None and found.by > small_motion.LARGEST * found.size
+        ):
             return found
-        if not may_overlap(self.found.blocks, u.reshape(-1, 2)):
+        if not small_motion.may_overlap(self.found.blocks, u.reshape(-1, 2)):
             return found
-        return overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
+        return small_motion.overlapping(self.found.blocks, motion_of_blocks(self.found, u)) or found
 
     def _highest_speed(self, u: np.ndarray | None) -> float:
         """Return a bound on the speed of any node, m/s; u : initial displacements, m.
@@ -101,7 +96,7 @@ class Monitor:
         return float(np.sqrt(stored)) + pushing * 4 * size * area
 
 
-def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
+def farthest_joint(found: SceneBody, u: np.ndarray) -> small_motion.Moved | None:
     """Return the joint with the largest motion over the size of its smaller block under
     displacements u [freedoms], m; of a pillar only slip counts. None without such a joint."""
     body, scene, joints = found.body, found.scene, found.body.joints
@@ -118,7 +113,7 @@ def farthest_joint(found: SceneBody, u: np.ndarray) -> Moved | None:
         pairs = of_all(found.blocks, found.across, "blocks")[joints.column]
         size = found.blocks.volume[pairs].min(axis=1) ** (1 / body.components)
         places = joints.place
-    return farthest(pairs, np.linalg.norm(jump, axis=1), size, places)
+    return small_motion.farthest(pairs, np.linalg.norm(jump, axis=1), size, places)
 
 
 def motion_of_blocks(found: SceneBody, u: np.ndarray) -> np.ndarray:

@@ -4,12 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jointwave.cases.run_memory import (
-    load_bytes,
-    refuse_beyond_memory,
-    snapshot_bytes,
-    waveform_bytes,
-)
+from jointwave.cases import run_memory
 from jointwave.cases.sampling import Clock, clock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.dem.blocks.pillar import blocks_of as row_of
@@ -76,11 +71,11 @@ def clock_of(blocks: RigidBlocks) -> Clock:
     of_block = OF_BLOCK[dim] + OF_POINT * blocks.points.shape[1] * (dim > 1 and blocks.has_points)
     parts = {
         blocks.counted_by: of_block * blocks.count,
-        "record.interval": waveform_bytes(scene, dim > 1),
-        "numerics.dem.step_fraction": load_bytes(scene, time.steps + time.stride),
-        "record.fields": snapshot_bytes(scene, blocks.corners[dim] * blocks.count),
+        "record.interval": run_memory.waveform_bytes(scene, dim > 1),
+        "numerics.dem.step_fraction": run_memory.load_bytes(scene, time.steps + time.stride),
+        "record.fields": run_memory.snapshot_bytes(scene, blocks.corners[dim] * blocks.count),
     }
-    refuse_beyond_memory(scene, parts)
+    run_memory.refuse_beyond_memory(scene, parts)
     return time
 
 

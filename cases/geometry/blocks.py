@@ -5,16 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from jointwave.cases.geometry import measure
 from jointwave.cases.geometry.cell_complex import OUTSIDE, Complex
-from jointwave.cases.geometry.measure import (
-    Moments,
-    Outlines,
-    cell_moments,
-    facet_moments,
-    outline_moments,
-    outlines,
-    united,
-)
 
 CONVEX = 1e-6  #: tolerated area error, over the area, of an outline of merged facets
 
@@ -44,7 +36,7 @@ class Facets:
     second_moment: np.ndarray
     joint_set: np.ndarray
     side: np.ndarray
-    outlines: Outlines
+    outlines: measure.Outlines
 
     def __len__(self) -> int:
         return len(self.area)
@@ -89,7 +81,7 @@ class Blocks:
         tables = (self, self.body, self.contacts, self.boundary)
         return sum(x.nbytes for one in tables for x in vars(one).values() if hasattr(x, "nbytes"))
 
-    def faces(self, tolerance: float) -> tuple[np.ndarray, np.ndarray, Outlines]:
+    def faces(self, tolerance: float) -> tuple[np.ndarray, np.ndarray, measure.Outlines]:
         """Return the faces of all blocks, in order: block [f], outward unit normal [f, d], outline.
         Coplanar facets of a block are one face. tolerance : m, of collinear vertices."""
         half, plane = self.body.halves(), self.body.plane
@@ -97,16 +89,16 @@ class Blocks:
         key = np.stack([half.cell, plane[half.facet], into], axis=1)
         first, group, order = _groups(key)
         normal = half.outward[first]
-        found = outlines(self.body, half.facet[order], group, normal, tolerance)
+        found = measure.outlines(self.body, half.facet[order], group, normal, tolerance)
         return half.cell[first], normal, found
 
     @cached_property
-    def outlines(self) -> Outlines:
+    def outlines(self) -> measure.Outlines:
         """Corners of each block in the plane, counter-clockwise."""
         block, normal, edges = self.faces(0.0)
         order = np.lexsort([np.arctan2(normal[:, 1], normal[:, 0]), block])
         first = np.searchsorted(block, np.arange(self.count + 1))
-        return Outlines(edges.corners[::2][order], first)
+        return measure.Outlines(edges.corners[::2][order], first)
 
 
 def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
@@ -114,8 +106,8 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
 
     tolerance : m, below which vertices are collinear. in_rows : False keeps the order of the cells.
     """
-    moments, half = facet_moments(body), body.halves()
-    m = cell_moments(body, half, moments.of(half.facet))
+    moments, half = measure.facet_moments(body), body.halves()
+    m = measure.cell_moments(body, half, moments.of(half.facet))
     order = np.flatnonzero(m.size > 0)
     if in_rows:  # along the longest extent first
         away, size = m.centroid[order] - body.vertices.min(axis=0), m.size[order].mean()
@@ -135,7 +127,7 @@ def blocks_of(body: Complex, tolerance: float, in_rows: bool = True) -> Blocks:
 
 
 def _grouped(
-    body: Complex, chosen: np.ndarray, key: np.ndarray, moments: Moments, tolerance: float
+    body: Complex, chosen: np.ndarray, key: np.ndarray, moments: measure.Moments, tolerance: float
 ) -> Facets:
     """Return the chosen facets (bool array [f]), merging those with equal rows of key (int array
     [f, n]), except where these are not convex together. moments : of all facets."""
@@ -148,12 +140,12 @@ def _grouped(
     found = Facets(
         np.where(turned[:, None], blocks[:, ::-1], blocks),
         normal,
-        *united(moments.of(parts), group, len(one)),
+        *measure.united(moments.of(parts), group, len(one)),
         joint_set=body.joint_set[one],
         side=body.side[one],
-        outlines=outlines(body, parts, group, normal, tolerance),
+        outlines=measure.outlines(body, parts, group, normal, tolerance),
     )
-    apart = np.abs(outline_moments(found.outlines).size - found.area) > CONVEX * found.area
+    apart = np.abs(measure.outline_moments(found.outlines).size - found.area) > CONVEX * found.area
     apart &= np.bincount(group, minlength=len(one)) > 1
     if apart.any():
         own = np.full(len(key), -1)

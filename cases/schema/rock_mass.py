@@ -11,20 +11,12 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, ValidationInfo, model_validator
 
+from jointwave.cases.schema import tables
 from jointwave.cases.schema.damping import Attenuating, Damping
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import Inclined, JointSet
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.scene import SceneBase
-from jointwave.cases.schema.tables import (
-    BlockStepping,
-    ElementStepping,
-    Gravity,
-    Numerics,
-    Recording,
-    Sides,
-    Time,
-)
 from jointwave.cases.schema.values import (
     Dip,
     DipDirection,
@@ -52,7 +44,7 @@ class IntactRock(Attenuating):
     intact_poisson: Poisson = 0.25  #: of the rock between the joints
 
 
-class Boundaries(Sides):
+class Boundaries(tables.Sides):
     """Boundary conditions of the sides of the domain; openings are free. Rock slides freely along a
     roller side, as along a plane of symmetry, and does not move normal to it."""
 
@@ -65,7 +57,7 @@ class Boundaries(Sides):
     outline: Literal["quiet", "free", "fixed"] = "free"  #: all other sides of an outline
 
 
-class GravityOfRock(Gravity):
+class GravityOfRock(tables.Gravity):
     """A body force. Fixed and roller sides bear the weight; quiet sides do too, with the static
     reaction of a held side beside their dashpots: below the rock (within 45 degrees) in all
     directions, beside it along their normal. A quiet side above the rock bears the in-situ stress
@@ -118,7 +110,7 @@ class InSituStress(Table):
         return max(0.0, float(3 * high - low if excavated else high))
 
 
-class RecordOfRock(Recording):
+class RecordOfRock(tables.Recording):
     """The results that are recorded."""
 
     #: m, where velocity, displacement and stress are recorded; on a joint the mean of both sides
@@ -127,7 +119,7 @@ class RecordOfRock(Recording):
     joints: list[Point] = Field(default_factory=list)
 
 
-class DemOfRock(BlockStepping):
+class DemOfRock(tables.BlockStepping):
     """Time stepping of rigid blocks, and their size where intact rock is subdivided."""
 
     #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
@@ -135,7 +127,7 @@ class DemOfRock(BlockStepping):
     block: Positive | None = None
 
 
-class ContinuumOfRock(ElementStepping):
+class ContinuumOfRock(tables.ElementStepping):
     """Discretisation and time stepping of the deformable rock."""
 
     #: in the plane; absent: quadrilaterals where every block has four corners
@@ -148,7 +140,7 @@ class ContinuumOfRock(ElementStepping):
         return self
 
 
-class NumericsOfRock(Numerics):
+class NumericsOfRock(tables.Numerics):
     """Numerical parameters; the defaults are chosen for accuracy."""
 
     dem: DemOfRock = DemOfRock()  # type: ignore[assignment]
@@ -204,7 +196,7 @@ class RockMass(SceneBase):
     damping: Damping = Damping()
     gravity: GravityOfRock | None = None
     prestress: InSituStress | None = None
-    time: Time
+    time: tables.Time
     numerics: NumericsOfRock = NumericsOfRock()
     record: RecordOfRock
     #: largest relative L2 misfit of each pair of solvers, over all waveforms; `a ~ b: velocity`:

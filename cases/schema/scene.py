@@ -9,24 +9,12 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
 
+from jointwave.cases.schema import tables
 from jointwave.cases.schema.damping import Damping
 from jointwave.cases.schema.joint import JointLaw, Joints, SoftLayer
 from jointwave.cases.schema.law_parts import under
 from jointwave.cases.schema.pulse import NO_LOAD, Load, shortest_period
 from jointwave.cases.schema.segment import Part, Segment, parts_of
-from jointwave.cases.schema.tables import (
-    LEAN,
-    Ends,
-    Gravity,
-    Motion,
-    Numerics,
-    Pillar,
-    Prestress,
-    Record,
-    Rock,
-    Scatter,
-    Time,
-)
 from jointwave.cases.schema.values import Pair, Positive, Table, Words
 
 
@@ -111,21 +99,21 @@ class SceneBase(Table):
 class Scene(SceneBase):
     """A pillar scene: rock, joints, load and receivers."""
 
-    pillar: Pillar
-    rock: Rock
-    motion: Motion = Motion()
+    pillar: tables.Pillar
+    rock: tables.Rock
+    motion: tables.Motion = tables.Motion()
     joints: Joints = Joints()
     soft_layers: list[SoftLayer] = []
     segments: list[Segment] = []
-    scatter: Scatter | None = None
+    scatter: tables.Scatter | None = None
     load: Load = NO_LOAD
-    ends: Ends = Ends()
+    ends: tables.Ends = tables.Ends()
     damping: Damping = Damping()
-    gravity: Gravity | None = None
-    prestress: Prestress | None = None
-    time: Time
-    numerics: Numerics = Numerics()
-    record: Record
+    gravity: tables.Gravity | None = None
+    prestress: tables.Prestress | None = None
+    time: tables.Time
+    numerics: tables.Numerics = tables.Numerics()
+    record: tables.Record
     #: largest relative L2 misfit of each pair of solvers, over all waveforms; `a ~ b: velocity`:
     #: over those of one quantity; `a ~ b: PPV`, `a ~ b: peak stress`: largest relative difference
     #: of peaks, over all receivers
@@ -171,7 +159,7 @@ class Scene(SceneBase):
         return self.shakes(self.load)
 
     @property
-    def boundaries(self) -> Ends:
+    def boundaries(self) -> tables.Ends:
         """The boundary conditions of the ends."""
         return self.ends
 
@@ -182,7 +170,7 @@ class Scene(SceneBase):
             return False, False
         kinds, along = (self.ends.start, self.ends.end), self.gravity.direction[1]
         start, end = (kind in ("quiet", "matched") for kind in kinds)
-        return start and along < LEAN, end and along > -LEAN
+        return start and along < tables.LEAN, end and along > -tables.LEAN
 
     @property
     def block_count(self) -> int:
@@ -199,7 +187,7 @@ class Scene(SceneBase):
         update: dict[str, Any] = {"segments": [], "soft_layers": [], "scatter": None}
         side, length = self.pillar.side, part.stop - part.start  # may be a single block
         block = length / part.blocks
-        update["pillar"] = Pillar.model_construct(length=length, side=side, block=block)
+        update["pillar"] = tables.Pillar.model_construct(length=length, side=side, block=block)
         if part.segment is not None:
             one = self.segments[part.segment]
             update |= {"rock": one.rock(self.rock), "joints": one.law(self.joints)}

@@ -7,13 +7,7 @@ from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.mesh.conforming import SIMPLEX
 from jointwave.continuum.scene import SceneBody
-from jointwave.continuum.space import compat
-from jointwave.continuum.space.evaluation import (
-    jacobians,
-    nodes_of_cells,
-    places_of_nodes,
-    tabulate,
-)
+from jointwave.continuum.space import compat, evaluation
 from jointwave.continuum.stepping.implicit import Implicit
 from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.results.snapshots import Frame, SnapshotRecorder
@@ -32,13 +26,13 @@ class StressOfCells:
 
     def __init__(self, found: SceneBody, parts: np.ndarray, points: np.ndarray) -> None:
         body, kind = found.body, found.body.cell.kind
-        self.nodes, corners = nodes_of_cells(body), compat.cell_corners(body.mesh)
+        self.nodes, corners = evaluation.nodes_of_cells(body), compat.cell_corners(body.mesh)
         self.size, centres = body.components, points[parts].mean(axis=1)
-        self.slopes = tabulate(body.cell.element, centres)[1]
+        self.slopes = evaluation.tabulate(body.cell.element, centres)[1]
         at = np.tile(centres, (len(corners), 1))
         each = np.repeat(corners, len(parts), axis=0)
         shape = len(corners), len(parts), *2 * (corners.shape[2],)
-        self.inverse = np.linalg.inv(jacobians(kind, each, at)).reshape(shape)
+        self.inverse = np.linalg.inv(evaluation.jacobians(kind, each, at)).reshape(shape)
         pairs = [(1, 1)]  # along a pillar
         if not found.scene.is_column:
             pairs = [*stress_components(body.components).values()]
@@ -73,7 +67,7 @@ class RockRecorder(SnapshotRecorder):
         parts = linear_cells(kind, points[own])
         self.stress = StressOfCells(found, parts, points[own])
         self.node, first, number = np.unique(nodes[:, own], return_index=True, return_inverse=True)
-        points = places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
+        points = evaluation.places_of_nodes(body)[:, own].reshape(-1, body.x.shape[1])[first]
         cells = number.reshape(-1, len(own))[:, parts].reshape(-1, parts.shape[1])
         block = np.repeat(body.block, len(parts))
         if scene.is_column:  # cells of a layer belong to the adjacent blocks

@@ -12,16 +12,8 @@ from ufl.algorithms.analysis import has_type
 from jointwave.cases.geometry.relations import joined
 from jointwave.continuum.mesh.conforming import SIMPLEX, Conforming, Marks, Places, cut_open, shared
 from jointwave.continuum.mesh.periodic import Facing
+from jointwave.continuum.space import compat
 from jointwave.continuum.space.bubbles import bubble_element
-from jointwave.continuum.space.compat import (
-    cell_nodes,
-    input_cells,
-    lagrange,
-    make_mesh,
-    matrix,
-    reference,
-    vector_space,
-)
 from jointwave.continuum.space.model import (
     Body,
     Facets,
@@ -61,15 +53,15 @@ class Elements:
         column = _marked(marks.column, mesh.on[pairs.cell, pairs.facet]).max(axis=1)
         self.pairs, self.column = pairs.of(column >= 0), column[column >= 0]
         cells, origin = cut_open(mesh, pairs, column >= 0)
-        self.domain = make_mesh(kind, mesh.x[origin], cells)
+        self.domain = compat.make_mesh(kind, mesh.x[origin], cells)
         if kind in SIMPLEX and order == 2:
             element = bubble_element(kind)
-            self.space = vector_space(self.domain, element, self.size)
+            self.space = compat.vector_space(self.domain, element, self.size)
         else:
-            element = reference(kind, order)
-            self.space = lagrange(self.domain, order, self.size)
-        self.cell, row = reference_cell(kind, order, element), input_cells(self.domain)
-        self.block, nodes = mesh.block[row], cell_nodes(self.space)
+            element = compat.reference(kind, order)
+            self.space = compat.lagrange(self.domain, order, self.size)
+        self.cell, row = reference_cell(kind, order, element), compat.input_cells(self.domain)
+        self.block, nodes = mesh.block[row], compat.cell_nodes(self.space)
         self.nodes = np.empty_like(nodes, np.int64)
         self.nodes[row] = nodes
         self.x = np.empty((nodes.max() + 1, mesh.x.shape[1]))
@@ -180,7 +172,7 @@ def assembled(forms: Forms, kind: str, order: int) -> list[Any]:
     """Assemble mass, stiffness and damping (without entries if absent) with dolfinx."""
     rules = nodal_rule(kind, order), rock_rule(kind, order), rock_rule(kind, order)
     both = [one for one in zip(forms, rules, strict=True) if one[0] is not None]
-    found = [without_round_off(matrix(by_rule(*one))) for one in both]
+    found = [without_round_off(compat.matrix(by_rule(*one))) for one in both]
     return [*found, csr_matrix(found[0].shape)][: len(forms)]
 
 

@@ -8,16 +8,7 @@ from scipy.sparse import csr_matrix
 
 from jointwave.continuum.space.evaluation import blocks_of_nodes
 from jointwave.continuum.space.model import Body
-from jointwave.continuum.stepping.arrays import (
-    VISCOUS,
-    Constants,
-    Jumps,
-    Quiet,
-    State,
-    StepFlags,
-    Work,
-    samples_for,
-)
+from jointwave.continuum.stepping import arrays
 from jointwave.continuum.stepping.explicit import leapfrog_for
 from jointwave.continuum.stepping.memory import memory_of
 from jointwave.continuum.stepping.problem import OF_POINTS, Problem, Readings
@@ -46,11 +37,11 @@ class Leapfrog:
         self.product, self._damping = products_for_steps(body)
         own, every = body.stiffness.shape
         self.halo = self.product.beyond(every - own, body.components)
-        self.samples = samples_for(problem.readings, samples, energy)
+        self.samples = arrays.samples_for(problem.readings, samples, energy)
         self.constants = c = self._constants()
         many, springs, damped = c.memory.share.size, c.quiet.stiffness, body.damping.nnz > 0
         jumps = len(c.jumps.first) * body.components
-        self.flags = StepFlags(
+        self.flags = arrays.StepFlags(
             dim=body.components,
             product=self.product.kind,
             law=parts,
@@ -65,12 +56,12 @@ class Leapfrog:
         viscous, relaxing = n * (damped or dashpots), n * (many > 0)
         of_points = jumps, jumps * limited, jumps * dashpots, jumps, jumps * dashpots
         vectors = [zeros(size) for size in (n, viscous, viscous, relaxing, relaxing, *of_points)]
-        self.work = Work(*vectors, np.zeros(c.quiet.freedom.shape))  # type: ignore[call-arg]
+        self.work = arrays.Work(*vectors, np.zeros(c.quiet.freedom.shape))  # type: ignore[call-arg]
         history = np.zeros((0, 0))
         if parts is not None:
             history = history_at_rest(c.points, parts, body.components)
         memory = zeros((many, n)), history, np.zeros(4), np.zeros_like(springs)
-        self.state = State(zeros(n), zeros(n), zeros(n), *memory)
+        self.state = arrays.State(zeros(n), zeros(n), zeros(n), *memory)
 
     def take(self, first: int, last: int, stride: int) -> None:
         """Take the steps first .. last - 1, with a sample at each multiple of `stride`."""
@@ -134,7 +125,7 @@ class Leapfrog:
         self.place(u, self.state.u)
         if self.flags.relaxing:
             stored = self.constants.memory.relaxed * (u @ (self.problem.body.stiffness @ u)) / 2
-            self.state.sums[VISCOUS] = stored
+            self.state.sums[arrays.VISCOUS] = stored
         if history is not None:
             self.state.history[:] = history
 
@@ -145,12 +136,12 @@ class Leapfrog:
         self.place(-fall, self.state.v)
         self.place(-3 * fall, self.state.v_before)
 
-    def _constants(self) -> Constants:
+    def _constants(self) -> arrays.Constants:
         problem, place, dt = self.problem, self.product.place, self.dt
         body, held, forces = problem.body, problem.held, problem.forces
         braked = 1 + problem.alpha * dt / 2
         inverse = self._placed(dt / (body.mass * braked))
-        return Constants(
+        return arrays.Constants(
             dt=dt,
             mass=self._placed(body.mass),
             inverse=inverse,
@@ -174,12 +165,12 @@ class Leapfrog:
         found[self.product.place] = values
         return found
 
-    def _jumps(self) -> Jumps:
+    def _jumps(self) -> arrays.Jumps:
         joints, dim = self.problem.body.joints, self.problem.body.components
         first = np.append(self.product.place, self.halo)[dim * joints.node]
-        return Jumps(first.astype(np.uint32), joints.frame)
+        return arrays.Jumps(first.astype(np.uint32), joints.frame)
 
-    def _quiet(self, inverse: np.ndarray) -> Quiet:
+    def _quiet(self, inverse: np.ndarray) -> arrays.Quiet:
         quiet, dim = self.problem.quiet, self.problem.body.components
         own, springs = quiet.freedom, 3 * (np.zeros((0, dim)),)
         if quiet.springs is not None:
@@ -189,7 +180,7 @@ class Leapfrog:
         viscosity = quiet.viscosity * (moves[:, :, None] & moves[:, None, :])
         freedom = self.product.place[own]
         beta = inverse[freedom][:, :, None] * viscosity / 2
-        return Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta), *springs)
+        return arrays.Quiet(freedom, viscosity, beta, np.linalg.inv(np.eye(dim) + beta), *springs)
 
 
 def products_for_steps(body: Body) -> tuple[Product, Table]:

@@ -6,16 +6,10 @@ from math import inf
 import numpy as np
 from scipy.sparse import csr_array
 
+from jointwave.cases import incident
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.measure import Outlines
 from jointwave.cases.histories import LoadHistory, Step
-from jointwave.cases.incident import (
-    FaceTractions,
-    FreeField,
-    IncidentField,
-    free_field,
-    tractions,
-)
 from jointwave.cases.loads import step_means, velocity_of
 from jointwave.cases.material.quiet_sides import base_traction, borne, impedances
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
@@ -59,8 +53,8 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
         if scene.excavated:
             opened = reactions(cut, facets_on(cut, sides, openings), stress)
 
-    def waves(field: IncidentField | None, rows: np.ndarray, time: Clock) -> list[Source]:
-        field = free_field(scene) if field is None else field
+    def waves(field: incident.IncidentField | None, rows: np.ndarray, time: Clock) -> list[Source]:
+        field = incident.free_field(scene) if field is None else field
         return incoming(field, shortest_period(scene.waves), quiet, impedance, rows, time)
 
     return Surroundings(
@@ -141,7 +135,7 @@ def delayed(row: np.ndarray, unit: np.ndarray, history: LoadHistory, late: np.nd
 
 
 def incoming(
-    field: IncidentField,
+    field: incident.IncidentField,
     period: float | None,
     points: BoundaryPoints,
     impedance: np.ndarray,
@@ -156,19 +150,19 @@ def incoming(
     """
     row = np.searchsorted(rows, points.block)
 
-    def found(field: IncidentField, times: np.ndarray) -> np.ndarray:
-        pulled = tractions(field, points.place, points.normal, impedance, times).values
+    def found(field: incident.IncidentField, times: np.ndarray) -> np.ndarray:
+        pulled = incident.tractions(field, points.place, points.normal, impedance, times).values
         return resultants(points.arm, pulled * points.area[:, None])
 
-    if isinstance(field, FreeField):
-        unit = [FreeField((replace(one, pulse=Step(1.0)),)) for one in field.waves]
+    if isinstance(field, incident.FreeField):
+        unit = [incident.FreeField((replace(one, pulse=Step(1.0)),)) for one in field.waves]
         return [
             delayed(row, found(still, np.array([inf]))[0], one.pulse, one.lateness(points.place))
             for still, one in zip(unit, field.waves, strict=True)
         ]
     interval = min(time.dt * time.stride, (period or inf) / IN_A_PERIOD)
     times = interval * np.arange(int(np.ceil(time.dt * time.steps / interval)) + 4)
-    samples = FaceTractions(times, summed(found(field, times), row, len(rows)))
+    samples = incident.FaceTractions(times, summed(found(field, times), row, len(rows)))
     return [
         lambda steps, dt, some, onto: samples.at(dt * steps, lambda all_: all_[:, some] @ onto.T)
     ]

@@ -15,23 +15,17 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.contact_points import bending
 from jointwave.cases.material.jointed_rock import JointedRock
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.exact.blocks.system import (
-    BlockSystem,
-    Contacts,
-    first_order,
-    relative,
-    resistance,
-)
+from jointwave.compare.exact.blocks import system
 
 
-def system_of(scene: Scene) -> BlockSystem:
+def system_of(scene: Scene) -> system.BlockSystem:
     """Return the first-order form of a scene's row."""
     own, base, p = own_freedoms(scene), None, calibrate(scene)
     mass, contacts = bodies(scene)
     if scene.shakes_base:
         base = np.zeros(mass.shape)
         base[p.block_count] = np.array([*scene.load.direction, 0.0, 0.0, 0.0])[own]
-    return first_order(
+    return system.first_order(
         mass,
         contacts,
         push=drive_vector(scene)[own],
@@ -49,7 +43,7 @@ def own_freedoms(scene: Scene) -> list[int]:
     return list(range(3 if scene.motion.rotation == "none" else 6))
 
 
-def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
+def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, system.Contacts]:
     """Return the masses of the blocks, the start's face and the end's face, [N + 2, freedoms], and
     the contacts, those of faces with the ground last; without slip, opening and softening.
 
@@ -76,7 +70,7 @@ def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, Contacts]:
     if len(own) > 1:
         part = bending(scene.joints.point_rule, scene.joints.contact_points)
         axis, second = np.eye(3)[1], part * p.area**2 / 12 * np.diag([1.0, 0.0, 1.0])
-    return np.vstack([np.stack([masses] * 3 + inertia, axis=1), faces])[:, own], Contacts(
+    return np.vstack([np.stack([masses] * 3 + inertia, axis=1), faces])[:, own], system.Contacts(
         blocks=pairs,
         arm=(y[:, None] - places[pairs])[..., None] * axis,
         normal=np.tile(axis, (len(y), 1)),
@@ -111,7 +105,7 @@ def drive_vector(scene: Scene) -> np.ndarray:
     return scene.pillar.area * vector
 
 
-def _at_start(scene: Scene, contacts: Contacts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _at_start(scene: Scene, contacts: system.Contacts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the blocks' displacement (m) and the contact forces (N, N m) before the load, at rest
     under static gravity; and the acceleration (m/s2) under sudden gravity.
 
@@ -128,8 +122,8 @@ def _at_start(scene: Scene, contacts: Contacts) -> tuple[np.ndarray, np.ndarray,
     sinks = np.tile(fall[own], count)
     if gravity is None or not sinks.any() or not (gravity.static or any(scene.bears)):
         return 0 * sinks, initial.ravel(), sinks
-    B, masses = relative(held, *mass.shape)[:, : c * count], mass[:count].ravel()
-    D = resistance(held, held.springs, c)
+    B, masses = system.relative(held, *mass.shape)[:, : c * count], mass[:count].ravel()
+    D = system.resistance(held, held.springs, c)
     rest = spsolve((B.T @ D @ B).tocsc(), masses * sinks)
     borne = -(D @ (B @ rest)).reshape(-1, c)
     if gravity.static:

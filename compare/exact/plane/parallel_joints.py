@@ -25,19 +25,8 @@ import numpy as np
 
 from jointwave.cases.incident import in_components
 from jointwave.cases.material.rock import ElasticRock, Values
+from jointwave.compare.exact.plane import waves
 from jointwave.compare.exact.plane.oblique_joint import Joint, scattering
-from jointwave.compare.exact.plane.waves import (
-    KINDS,
-    Axes,
-    Kind,
-    axes_of,
-    is_evanescent,
-    kinds_with,
-    polarisations,
-    slowness_along,
-    slownesses_across,
-    stress,
-)
 
 
 class Layers(NamedTuple):
@@ -49,7 +38,7 @@ class Layers(NamedTuple):
 
 
 def coefficients(
-    incidence: Kind,
+    incidence: waves.Kind,
     angle: Values,
     omega: Values,
     rock: ElasticRock,
@@ -63,7 +52,7 @@ def coefficients(
     and Im >= 0 as for Laplace variables. angle, omega and rock are broadcast together. joints : in
     the order in which the wave meets them. spacings : between them, m, one less.
     """
-    slowness, kinds = slowness_along(rock, incidence, angle), kinds_with(incidence)
+    slowness, kinds = waves.slowness_along(rock, incidence, angle), waves.kinds_with(incidence)
     rocks, incident = [rock] * (len(joints) + 1), np.eye(len(kinds))[kinds.index(incidence)]
     down, up = layers(rocks, joints, spacings, slowness, omega, incident, kinds)
     return np.moveaxis(np.concatenate([up[0], down[-1]], axis=-1), -1, 0)
@@ -76,14 +65,14 @@ def layers(
     slowness: Values,
     omega: Values,
     incident: np.ndarray,
-    kinds: tuple[Kind, ...] = KINDS,
+    kinds: tuple[waves.Kind, ...] = waves.KINDS,
 ) -> Layers:
     """Return the waves of all layers for an incident wave [kinds] at the first joint.
 
     rocks : of the layers, one more than joints. slowness : s/m.
     """
     turned, inner = 1j * np.asarray(omega)[..., None], list(zip(spacings, rocks[1:-1], strict=True))
-    E = [np.exp(turned * d * slownesses_across(rock, slowness, kinds)) for d, rock in inner]
+    E = [np.exp(turned * d * waves.slownesses_across(rock, slowness, kinds)) for d, rock in inner]
     R, T = scattering(rocks[-2], joints[-1], slowness, omega, rocks[-1], kinds)
     reflected, behind = [R], [T]
     for k in range(len(joints) - 2, -1, -1):
@@ -111,7 +100,7 @@ class PulseStack(NamedTuple):
     rocks : of the layers [N + 1], equal if a wave is evanescent. joints, depths (along n, m) : [N].
     """
 
-    axes: Axes
+    axes: waves.Axes
     rocks: Sequence[ElasticRock]
     joints: Sequence[Joint]
     depths: np.ndarray
@@ -143,7 +132,7 @@ class PulseStack(NamedTuple):
     def slownesses(self) -> np.ndarray:
         """Slownesses across the joints in every layer, complex [layers, kinds], s/m."""
         p, kinds = self.axes.slowness, self.axes.kinds
-        return np.array([slownesses_across(one, p, kinds) for one in self.rocks])
+        return np.array([waves.slownesses_across(one, p, kinds) for one in self.rocks])
 
     @property
     def lead(self) -> complex:
@@ -153,7 +142,9 @@ class PulseStack(NamedTuple):
     @property
     def is_evanescent(self) -> bool:
         """Whether P waves decay away from the joints."""
-        return self.axes.kinds == KINDS and is_evanescent(self.rocks[0], self.axes.slowness)
+        return self.axes.kinds == waves.KINDS and waves.is_evanescent(
+            self.rocks[0], self.axes.slowness
+        )
 
     @property
     def modes(self) -> np.ndarray:
@@ -162,11 +153,11 @@ class PulseStack(NamedTuple):
         axes, found = self.axes, []
         for rock, across in zip(self.rocks, self.slownesses, strict=True):
             g = np.tile(axes.rows[2:] + 0j, (2, 1))
-            if axes.kinds == KINDS:
-                g = polarisations(rock, axes.slowness).reshape(4, 2) @ axes.rows[:2]
+            if axes.kinds == waves.KINDS:
+                g = waves.polarisations(rock, axes.slowness).reshape(4, 2) @ axes.rows[:2]
             along = np.full(len(g), axes.slowness)
             s = np.stack([along, np.concatenate([across, -across])], axis=-1) @ axes.rows[:2]
-            tensor = stress(rock, s, g) / self.rocks[0].p_impedance
+            tensor = waves.stress(rock, s, g) / self.rocks[0].p_impedance
             found.append(np.concatenate([g, in_components(tensor)], axis=1))
         return np.array(found)
 
@@ -174,7 +165,7 @@ class PulseStack(NamedTuple):
 def stack_of(
     rocks: Sequence[ElasticRock],
     joints: list[Joint],
-    kind: Kind,
+    kind: waves.Kind,
     direction: np.ndarray,
     normal: np.ndarray,
     offsets: np.ndarray,
@@ -193,5 +184,5 @@ def stack_of(
     depths, met = np.asarray(offsets, dtype=float), joints
     if np.asarray(direction) @ normal < 0:
         depths, met, rocks = -depths[::-1], met[::-1], rocks[::-1]
-    axes = axes_of(rocks[0], kind, direction, normal, polarisation)
+    axes = waves.axes_of(rocks[0], kind, direction, normal, polarisation)
     return PulseStack(axes, rocks, met, depths)

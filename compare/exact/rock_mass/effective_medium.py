@@ -29,14 +29,7 @@ from jointwave.cases.material.rock_mass import initial_stress
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.compare.exact.rock_mass.conditions import (
-    Face,
-    all_parallel,
-    free_face,
-    holds,
-    prestress_of,
-    waves_leave,
-)
+from jointwave.compare.exact.rock_mass import conditions
 from jointwave.compare.solvers.record import Answer, Form, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
 
@@ -61,7 +54,7 @@ class MediumField(PlaneWaves):
 def medium_field(scene: RockMass) -> MediumField:
     """Return the waves of a scene in its effective medium and their reflections from a free face;
     all joint sets must have a spacing."""
-    C, face = medium_stiffness(scene), None if scene.in_space else free_face(scene)
+    C, face = medium_stiffness(scene), None if scene.in_space else conditions.free_face(scene)
     waves = [medium_wave(scene, one, C) for one in scene.waves]
     back = [] if face is None else [x for one in waves for x in _reflections(one, C, scene, face)]
     return MediumField((*waves, *back))
@@ -96,7 +89,9 @@ def medium_wave(scene: RockMass, wave: Wave, C: np.ndarray) -> MediumWave:
     return MediumWave(elastic_rock(scene.rock), n, g, c, through, pulse, -in_components(full))
 
 
-def _reflections(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -> list[MediumWave]:
+def _reflections(
+    wave: MediumWave, C: np.ndarray, scene: RockMass, face: conditions.Face
+) -> list[MediumWave]:
     """Return the reflections of a wave from a free face of a medium of stiffness C: the waves with
     slownesses p t + q m, with the incident p along the face, that travel away from it and cancel
     the traction on it; waves that decay from the face are left out."""
@@ -130,14 +125,14 @@ def _reflections(wave: MediumWave, C: np.ndarray, scene: RockMass, face: Face) -
 
 def applies(scene: RockMass) -> Answer:
     """Return whether the scene has only waves, and they travel in an effective medium."""
-    face = None if scene.in_space else free_face(scene)
-    answer = holds(
+    face = None if scene.in_space else conditions.free_face(scene)
+    answer = conditions.holds(
         scene,
         ("waves", "prestress"),
         (not scene.joint_sets, "there is no joint"),
-        (all_parallel(scene), "joints are parallel: see parallel-joints"),
+        (conditions.all_parallel(scene), "joints are parallel: see parallel-joints"),
         (any(one.spacing is None for one in scene.joint_sets), "a joint has no spacing"),
-    ) and waves_leave(scene, face)
+    ) and conditions.waves_leave(scene, face)
     if not answer:
         return answer
     corners, waves = np.array(scene.domain.corners), medium_field(scene).waves
@@ -160,7 +155,7 @@ def solve(scene: RockMass) -> xr.Dataset:
     values = {
         "velocity": velocity.swapaxes(1, 2),
         "displacement": moved.swapaxes(1, 2),
-        "stress": prestress_of(scene) - stress.swapaxes(1, 2),
+        "stress": conditions.prestress_of(scene) - stress.swapaxes(1, 2),
     }
     return dataset(scene, SOLVER.name, times, values)
 

@@ -15,15 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from jointwave.cases import incident
 from jointwave.cases.errors import SceneError
-from jointwave.cases.incident import (
-    FreeField,
-    IncidentField,
-    PlaneWave,
-    WaveMotion,
-    free_field,
-    plane_wave,
-)
 from jointwave.cases.partition.joints import strata
 from jointwave.cases.partition.shape import SIDES, shape_of
 from jointwave.cases.schema.domain import Domain
@@ -48,9 +41,9 @@ class StackField:
     """The waves of a scene with all reflections and transmissions at its parallel planes."""
 
     stack: JointStack
-    waves: tuple[PlaneWave, ...]
+    waves: tuple[incident.PlaneWave, ...]
 
-    def __call__(self, points: np.ndarray, times: np.ndarray) -> WaveMotion:
+    def __call__(self, points: np.ndarray, times: np.ndarray) -> incident.WaveMotion:
         m, dim = np.shape(points)
         total = [np.zeros((m, count, len(times))) for count in (dim, dim * (dim + 1) // 2)]
         for wave in self.waves if m else ():
@@ -58,24 +51,24 @@ class StackField:
                 found = layer_pulses.motion(wave.pulse.value, met, points - wave.through, times)
                 for sum_, part in zip(total, found, strict=True):
                     sum_ += part
-        return WaveMotion(*total)
+        return incident.WaveMotion(*total)
 
 
-def field_of(scene: RockMass) -> IncidentField:
+def field_of(scene: RockMass) -> incident.IncidentField:
     """Return the field of a scene's waves on quiet sides. Raises SceneError if it is unknown."""
     if not scene.waves:
-        return free_field(scene)
+        return incident.free_field(scene)
     if normal_incidence.applies(scene):
         return NormalField(scene)
     planes = planes_of(scene)
-    waves = tuple(plane_wave(scene, one) for one in scene.waves)
+    waves = tuple(incident.plane_wave(scene, one) for one in scene.waves)
     if planes.joint_sets or planes.regions:
         return StackField(stack_of(planes), waves)
     if scene.joint_sets and all(one.spacing for one in scene.joint_sets):
         return medium_field(scene)
     if free_face(planes) is not None:
         return StackField(stack_of(planes), waves)
-    return FreeField(waves)
+    return incident.FreeField(waves)
 
 
 def _planes_in_space(scene: RockMass) -> RockMass:

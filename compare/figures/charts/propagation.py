@@ -16,12 +16,7 @@ from jointwave.compare.figures.export import SceneFigure, chart, set_heading
 from jointwave.compare.figures.receivers import named, table_of
 from jointwave.compare.figures.style import style
 from jointwave.compare.misfit.pairs import Comparison
-from jointwave.compare.readings.attenuation import (
-    quality_factor,
-    transfer_function,
-    wave_speed,
-    waveforms,
-)
+from jointwave.compare.readings import attenuation
 from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
 
 LEAST = 3  # receivers of a row
@@ -72,7 +67,7 @@ def curves_of(comparison: Comparison) -> Curves:
     for solution in in_order(comparison.results):
         result = comparison.results[solution]
         if "velocity" in result and len(result["velocity"]) >= LEAST:
-            row = waveforms(result)
+            row = attenuation.waveforms(result)
             if (row != 0).any("time").all() and row["distance"].diff("receiver").min() > 0:
                 with suppress(SceneError):  # receivers not on a line
                     found[solution] = _measured(result, row)
@@ -90,12 +85,12 @@ def curves_of(comparison: Comparison) -> Curves:
 
 def _measured(result: xr.Dataset, row: xr.DataArray) -> dict[str, pd.Series]:
     """Return one result's curves at frequencies present at the first receiver; row : velocities."""
-    first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(transfer_function(result))
+    first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(attenuation.transfer_function(result))
     speed, nearest = dispersion(result).phase_speed, row["distance"].diff("receiver").min()
-    apart = abs(wave_speed(result)) / (2 * float(nearest))
+    apart = abs(attenuation.wave_speed(result)) / (2 * float(nearest))
     speed = speed[speed.frequency.values < ALIASED * apart]
     heard = (first > HEARD * first.max()) & (transfer.frequency.values > 0)
-    every = transfer, speed, 1 / quality_factor(result).quality
+    every = transfer, speed, 1 / attenuation.quality_factor(result).quality
     found = (pd.Series(one.values, one.frequency.values) for one in every)
     series = (one.reindex(transfer.frequency.values[heard]).dropna() for one in found)
     return dict(zip(NAMES, series, strict=True))
