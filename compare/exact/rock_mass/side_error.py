@@ -13,31 +13,26 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.checks.rock_mass import GRAZING
-from jointwave.cases.incident import PlaneWave, in_components, plane_wave
-from jointwave.cases.material.rock_mass import initial_stress
+from jointwave.cases.incident import plane_wave
 from jointwave.cases.partition.shape import Face, distance, shape_of
-from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.warnings.rock_mass import fastest, plane_waves, spelled
+from jointwave.cases.warnings.places import spelled
+from jointwave.cases.warnings.rock_mass import fastest, plane_waves
 from jointwave.cases.warnings.sources import onset
-from jointwave.compare.exact.plane.waves import cosines, face
-from jointwave.compare.exact.rock_mass import normal_incidence
+from jointwave.compare.exact.rock_mass import beyond_strength, normal_incidence
 from jointwave.compare.exact.rock_mass.conditions import (
     ALONG,
     along,
     free_face,
-    linear_law,
     normals_of,
     waves_leave,
 )
 from jointwave.compare.exact.rock_mass.effective_medium import medium_field
-from jointwave.compare.exact.rock_mass.field import StackField, field_of, planes_of
+from jointwave.compare.exact.rock_mass.field import planes_of
 from jointwave.compare.exact.rock_mass.stack_waves import on_face
 
 BESIDE = 0.5  # P wavelengths from a quiet side within which it disturbs the waves of a load
 LEAST = 0.01  # error relative to the wave below which nothing is reported
-SAMPLES = 2000  # most times at which tractions are evaluated
-IN_A_PERIOD = 40  # least number of them per period
 
 
 class SideError(NamedTuple):
@@ -139,7 +134,7 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
     if smeared and left:
         yield _face_motion(scene), "a wave decays from the free side"
     for one in left:
-        back = _reflected_part(scene, one)
+        back = beyond_strength.reflected_part(scene, one)
         if smeared:
             yield 1 - float(np.sqrt(1 - back**2)), f"joint set {one.name!r} is not smeared"
         else:
@@ -148,20 +143,7 @@ def _causes(scene: RockMass) -> Iterator[tuple[float, str]]:
             if any(abs(one.normal @ wave.direction) < ALONG for wave in scene.waves):
                 why = "lies along a wave"
             yield 1 - (1 - back) ** count, f"joint set {one.name!r} {why}"
-    yield from _beyond_strength(scene)
-
-
-def _reflected_part(scene: RockMass, one: JointSet) -> float:
-    """Return the largest part of a wave reflected by a joint of a set at its dominant frequency, at
-    normal incidence: x / sqrt(1 + x^2), x = omega Z / 2 K."""
-    most = 0.0
-    for wave in scene.waves:
-        incident, K = plane_wave(scene, wave), one.normal_stiffness
-        K = K if wave.kind == "P" else one.shear_stiffness
-        if wave.time_scale and K:
-            x = np.pi / wave.time_scale * float(incident.rock.density) * incident.speed / K
-            most = max(most, float(x / np.hypot(1.0, x)))
-    return most
+    yield from beyond_strength.parts(scene)
 
 
 def _face_motion(scene: RockMass) -> float:
@@ -173,7 +155,10 @@ def _face_motion(scene: RockMass) -> float:
     for one in scene.waves:
         waves = medium_field(scene.model_copy(update={"waves": [one]})).waves
         left = on_face(np.sum([x.unit_stress() for x in waves], axis=0)[None, :, None], face.normal)
-        most = max(most, float(np.linalg.norm(left)) * _largest_velocity(waves[0], face.normal))
+        most = max(
+            most,
+            float(np.linalg.norm(left)) * beyond_strength.largest_velocity(waves[0], face.normal),
+        )
     return most
 
 
@@ -188,73 +173,3 @@ def _damped(scene: RockMass) -> float:
         rate = (alpha + beta * omega**2) / 2
         most = max(most, 1 - float(np.exp(-rate * size / plane_wave(scene, wave).speed)))
     return most
-
-
-def _beyond_strength(scene: RockMass) -> Iterator[tuple[float, str]]:
-    """Yield for each joint set the motion caused by tractions beyond its strength, over the
-    velocity of the wave, and the change of its reflection as it closes."""
-    sets = [one for one in scene.joint_sets if not linear_law(one)]
-    if not sets:
-        return
-    field, corners = field_of(scene), np.array(scene.domain.corners)
-    middle = corners.mean(axis=0)
-    places = np.vstack([middle, corners])
-    if isinstance(field, StackField):
-        n = field.stack.normal
-        places = np.vstack([middle, middle + (field.stack.offsets[:, None] - middle @ n) * n])
-    period = min((one.time_scale or np.inf for one in scene.waves), default=np.inf)
-    count = np.clip(IN_A_PERIOD * scene.time.duration / period, 200, SAMPLES)
-    times = np.linspace(0.0, scene.time.duration, int(count))
-    waves = [plane_wave(scene, one) for one in scene.waves]
-    peak = max(float(np.abs(one.pulse.value(times)).max()) for one in waves)
-    still = in_components(initial_stress(scene, places))
-    stress = still[:, :, None] - field(places, times).stress
-    for one in sets:
-        n = one.normal
-        moves, traction = max(_largest_velocity(wave, n) for wave in waves), on_face(stress, n)
-        pressed = np.einsum("i,min->mn", n, traction)
-        shear = np.linalg.norm(traction - pressed[:, None] * n[:, None], axis=1)
-        for excess, does in zip(_excess(one, pressed, shear), ("opens", "slips"), strict=True):
-            yield (excess * moves / peak if peak else 0.0), f"joint set {one.name!r} {does}"
-        if one.maximum_closure is not None and one.normal_stiffness:
-            begins = one.normal_stiffness * one.maximum_closure + max(pressed.min(), 0.0)
-            closes = np.ptp(pressed) / begins
-            part = _reflected_part(scene, one) * float(closes / (1 + closes))
-            yield part, f"joint set {one.name!r} stiffens"
-
-
-def _largest_velocity(wave: PlaneWave, normal: np.ndarray) -> float:
-    """Return the largest velocity caused by a traction on a joint, m/s/Pa: the largest singular
-    value of V A^-1, V and A the velocities and tractions of unit P and SV waves with the wave's
-    slowness along the joint; in space at least that of SH waves, 1 / (Z_s cos phi)."""
-    across = wave.direction - (wave.direction @ normal) * normal
-    slowness = float(np.linalg.norm(across)) / wave.speed
-    w = face(wave.rock, slowness)
-    V, A = np.array([w.shear_velocity, w.normal_velocity]), np.array([w.shear, w.normal])
-    found = float(np.linalg.norm(V @ np.linalg.inv(A), 2))
-    if len(normal) == 3:
-        cosine = max(float(np.abs(cosines(wave.rock, slowness)[1])), ALONG)
-        found = max(found, 1 / (float(wave.rock.s_impedance) * cosine))
-    return found
-
-
-def _excess(one: JointSet, pressed: np.ndarray, shear: np.ndarray) -> tuple[float, float]:
-    """Return by how much normal and shear traction exceed a failed joint's strength, Pa."""
-    opens = slides = 0.0
-    if one.tension is False or one.tensile_strength is not None:
-        strength, pulled = one.tensile_strength or 0.0, float(-pressed.min())
-        opens = pulled if pulled > strength else 0.0
-    if one.friction_angle is not None or one.cohesion is not None:
-        closed, cohesion = np.maximum(pressed, 0.0), one.cohesion or 0.0
-
-        def strength_of(angle: float | None, cohesion: float) -> np.ndarray:
-            return cohesion + np.tan(np.radians(angle or 0.0)) * closed
-
-        if (shear > strength_of(one.friction_angle, cohesion)).any():
-            angle = one.friction_angle
-            if one.dynamic_friction_angle is not None:
-                angle = one.dynamic_friction_angle
-            if one.residual_cohesion is not None:
-                cohesion = one.residual_cohesion
-            slides = float((shear - strength_of(angle, cohesion)).max())
-    return opens, slides

@@ -1,0 +1,129 @@
+"""Warnings about the places of joints and receivers in a rock mass, one line each."""
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations, product
+
+import numpy as np
+
+from jointwave.cases.geometry.cell_complex import PARALLEL
+from jointwave.cases.geometry.locate import sides_at
+from jointwave.cases.partition.joints import region_at, within
+from jointwave.cases.partition.lattice import by_direction, squared
+from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.shape import distance, shape_of
+from jointwave.cases.schema.joint import JointSet
+from jointwave.cases.schema.rock_mass import RockMass
+
+NEAR = 0.05  # largest distance of a receiver from its joint, over the domain's size
+COINCIDENT = 1e-9  # distance below which joints coincide, over the domain's size
+
+
+def spelled(place: Sequence[float]) -> str:
+    """Return a place as text, "[20, 30]"."""
+    return "[" + ", ".join(f"{x:g}" for x in place) + "]"
+
+
+def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
+    """Warn where joints of two sets coincide: only the law of the first set holds there."""
+    plain = [
+        (i, one)
+        for i, one in enumerate(scene.joint_sets)
+        if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
+    ]
+    for (i, one), (k, other) in combinations(plain, 2):
+        normals = np.array([each.normal for each in (one, other)])
+        if np.linalg.matrix_rank(normals, tol=PARALLEL) == 1:
+            places = (_joint_places(scene, each, normals[1]) for each in (one, other))
+            apart = np.abs(np.subtract.outer(*places))
+            if count := int((apart < COINCIDENT * scene.reach).any(axis=0).sum()):
+                yield (
+                    f"joint_sets[{k}] and joint_sets[{i}] have {count} joints in common: there "
+                    f"only the law of joint_sets[{i}] holds"
+                )
+
+
+def _away(scene: RockMass, one: JointSet, points: np.ndarray) -> np.ndarray:
+    """Return the distance of points [n, d] from the nearest joint of a set without scatter, m."""
+    apart = np.subtract.outer(points @ one.normal, _joint_places(scene, one, one.normal))
+    return np.abs(apart).min(axis=1, initial=np.inf)
+
+
+def _joint_places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndarray:
+    """Return the places of a set's joints along a normal, m, without scatter; joints along sides
+    are left out unless the scene has periodic sides."""
+    origin, across = normal @ one.origin, np.array(scene.domain.corners) @ normal
+    if one.spacing is None:
+        return np.array([origin])
+    within = 0.0 if scene.boundaries.sides("periodic") else COINCIDENT * scene.reach
+    ends = np.array([across.min() + within, across.max() - within])
+    first, last = (ends - origin) / one.spacing
+    return origin + one.spacing * np.arange(np.ceil(first), np.floor(last) + 1)
+
+
+def _of_distances(scene: RockMass) -> Iterator[str]:
+    """Warn of spacings larger than the domain, and of joint receivers far from any joint."""
+    corners, sets, dim = np.array(scene.domain.corners), scene.joint_sets, scene.domain.dimension
+    for i, one in enumerate(sets):
+        extent = float(np.ptp(corners @ one.normal))
+        if one.spacing is not None and one.spacing > extent and not scene.domain.file_key:
+            yield (
+                f"joint_sets[{i}].spacing = {one.spacing:g} m exceeds the domain, {extent:g} m "
+                f"across its joints; {one.spacing:g} mm is {one.spacing / 1e3:g} m"
+            )
+    known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
+    if not known or scene.domain.file_key:
+        return  # the places of joints are known only after cutting
+    places = np.array(scene.record.joints).reshape(-1, dim)
+    away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
+    for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
+        yield (
+            f"record.joints[{k}] = {spelled(places[k])} is {away[k]:.3g} m from the nearest joint, "
+            "whose motion it records"
+        )
+
+
+def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
+    """Warn of receivers on joints, where velocity and stress may jump, and of forces there."""
+    read = "where velocity, displacement and the stress along it are the mean of both sides"
+    named = [(f"record.points[{i}]", x, read) for i, x in enumerate(scene.record.points)]
+    forces = [(f"{key}.at", one.at) for key, one in scene.entries("loads") if one.at]
+    named += [(*one, "whose sides bear equal parts of the force") for one in forces]
+    points = np.array([at for _, at, _ in named])
+    for k, one in enumerate(scene.joint_sets):
+        if one.scatter or scene.domain.file_key or not len(points):
+            continue
+        near = _away(scene, one, points)
+        on = np.flatnonzero(near <= COINCIDENT * scene.reach)
+        if len(on) and (one.ends_at or one.regions):
+            sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))
+            on = on[[len(blocks) > 1 for blocks in sides]]
+        for key, at, what in (named[i] for i in on):
+            yield f"{key} = {spelled(at)} lies on a joint of joint_sets[{k}], {what}"
+
+
+def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
+    """Warn of points on welds and roller sides, where triangles' stress does not converge."""
+    every, block = within(scene, scene.joint_sets), scene.numerics.dem.block
+    if block is None or all(squared(x) or len(by_direction(x.joint_sets)) > 1 for x in every):
+        return
+    shape, tiny = shape_of(scene.domain), COINCIDENT * scene.reach
+    rollers = [x for side in scene.boundaries.sides("roller") for x in shape.faces_of(side)]
+    around = tiny * np.array([*product((-1, 1), repeat=scene.domain.dimension)])
+    for i, at in enumerate(scene.record.points):
+        welded = len(set(region_at(scene.regions, np.array(at) + around))) > 1
+        welded &= min((_away(scene, x, np.array([at]))[0] for x in scene.joint_sets), default=1) > 0
+        if welded or (rollers and distance(np.array(at), rollers) <= tiny):
+            place = "a welded boundary of regions" if welded else "a roller side"
+            yield (
+                f"record.points[{i}] = {spelled(at)} lies on {place}, where the stress of rigid "
+                "blocks is off by up to 50 %, however small they are: half a block away, "
+                f"{block / 2:.3g} m, it converges"
+            )
+
+
+RULES_OF_PLACES = (
+    _of_joints_given_twice,
+    _of_distances,
+    _of_points_on_joints,
+    _of_points_at_triangles,
+)
