@@ -40,10 +40,14 @@ def mark_used(directory: Path) -> None:
 
 
 def make(directory: Path) -> None:
-    """Create the folder of a version if missing, and remove unused ones."""
+    """Create the folder of a version if missing, and remove those of versions that were not used
+    for `UNUSED`, and no other files."""
     if not directory.exists():
         directory.mkdir(parents=True, exist_ok=True)
-        forget_unused(directory.parent)
+        for state in directory.parent.iterdir():
+            with suppress(OSError):
+                if STATE.fullmatch(state.name) and time() - state.stat().st_mtime > UNUSED:
+                    shutil.rmtree(state)
 
 
 @contextmanager
@@ -58,11 +62,3 @@ def one_process(lock: Path, wait: float, announce: Callable[[], None]) -> Iterat
         timer.daemon = True
         timer.start()
         yield
-
-
-def forget_unused(base: Path) -> None:
-    """Remove the folders of versions that were not used for `UNUSED`, and no other files."""
-    for state in base.iterdir():
-        with suppress(OSError):
-            if STATE.fullmatch(state.name) and time() - state.stat().st_mtime > UNUSED:
-                shutil.rmtree(state)

@@ -36,14 +36,12 @@ def linear_cells(cell: str, nodes: np.ndarray) -> np.ndarray:
     ranks = np.stack([np.unique(x.round(9), return_inverse=True)[1] for x in nodes.T], axis=-1)
     node_at = {tuple(place): i for i, place in enumerate(ranks.tolist())}
     order = int(ranks.max())
-    parts = _boxes(CORNERS[cell], order) if cell in CORNERS else _simplices(nodes.shape[1], order)
+    if cell in CORNERS:
+        boxes = product(range(order), repeat=nodes.shape[1])
+        parts = [(np.array(place) + CORNERS[cell]).tolist() for place in boxes]
+    else:
+        parts = _simplices(nodes.shape[1], order)
     return np.array([[node_at[tuple(place)] for place in part] for part in parts])
-
-
-def _boxes(corners: list[tuple[int, ...]], order: int) -> list[list[list[int]]]:
-    """Return the lattice places of the corners of every box."""
-    places = product(range(order), repeat=len(corners[0]))
-    return [(np.array(place) + corners).tolist() for place in places]
 
 
 def _simplices(dim: int, order: int) -> list[list[list[int]]]:

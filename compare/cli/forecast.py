@@ -4,8 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from time import process_time
 from typing import Any
 
-import pandas as pd
-
 from jointwave.cases.size import spoken
 from jointwave.compare.cli.terminal import print_json, progress, say, show_frame
 from jointwave.compare.runs.timings import each
@@ -55,7 +53,9 @@ def show_forecasts(
     if len(table) > MOST:
         how = {"times": "sum", "seconds": "sum", "bytes": "max"}
         table = table.groupby(["point", "engine"], sort=False, as_index=False).agg(how)
-    show_frame(_shown(table))
+    cells = table.assign(**{x: table[x].map(how) for x, how in WORDS.items() if x in table})
+    filled = [name for name in HEADS if name in cells and cells[name].astype(bool).any()]
+    show_frame(cells[filled].rename(columns=HEADS))
     for point, message in failed.items():
         say(f"would fail: {point}: {message}", "red")
     said = [f"{read} would be read"] * bool(read)
@@ -63,10 +63,3 @@ def show_forecasts(
     said += [f"about {in_seconds(total)} of CPU time"]
     said += [f"{untimed} not timed on this machine"] * bool(untimed)
     say(f"{count:,.0f} would run, {', '.join(said)}; nothing was written")
-
-
-def _shown(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the table as text, without empty columns."""
-    found = table.assign(**{x: table[x].map(how) for x, how in WORDS.items() if x in table})
-    left = [name for name in HEADS if name in found and found[name].astype(bool).any()]
-    return found[left].rename(columns=HEADS)

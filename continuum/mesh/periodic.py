@@ -48,16 +48,11 @@ def facing(mesh: Conforming, body: Complex, across: Across, first: int) -> Facin
     vertices = np.arange(len(mesh.x))
     vertices[at_near] = at_far[match]
     pairs = Places(*(np.stack([one[far], one[near]], axis=1) for one in (cell, facet)))
-    contact = _contacts(mesh.block[pairs.cell], middle[far], across)
-    return Facing(pairs, first + contact, across.contacts.joint_set[contact] != NO_SET, vertices)
-
-
-def _contacts(blocks: np.ndarray, middle: np.ndarray, across: Across) -> np.ndarray:
-    """Return the contact between blocks [n, 2] nearest to places [n, d] at the far side."""
-    known = across.contacts
-    apart = np.abs(blocks[:, None] - known.blocks).sum(axis=2) > 0
-    away = np.linalg.norm(middle[:, None] - known.centroid, axis=2)
-    return np.where(apart, np.inf, away).argmin(axis=1)
+    known = across.contacts  # of the contacts between the same blocks, the nearest
+    apart = np.abs(mesh.block[pairs.cell][:, None] - known.blocks).sum(axis=2) > 0
+    away = np.linalg.norm(middle[far][:, None] - known.centroid, axis=2)
+    contact = np.where(apart, np.inf, away).argmin(axis=1)
+    return Facing(pairs, first + contact, known.joint_set[contact] != NO_SET, vertices)
 
 
 def matching_facets(body: Complex, across: Across) -> np.ndarray:

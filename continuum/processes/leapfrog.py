@@ -81,7 +81,9 @@ class SharedLeapfrog(Leapfrog):
                 span = begin + k, begin + k + 1, stride
                 kernel(*given, drive[k : k + 1], moved[k : k + 1], span)
                 self._exchange()
-        self._add_up(-(-first // stride), -(-last // stride))
+        for rows in self.samples:  # each process has a part of their sum
+            if (some := rows[:, -(-first // stride) : -(-last // stride)]).size:
+                some[:] = sum(self.problem.comm.allgather(some))
 
     def _exchange(self) -> None:
         """Advance the halo by a step, with velocities of the processes that own it."""
@@ -92,13 +94,6 @@ class SharedLeapfrog(Leapfrog):
         if self.flags.relaxing:
             memory, past = self.constants.memory, state.elongation[:, halo]
             past[:] = memory.decay[:, None] * past + memory.gain[:, None] * state.v[halo]
-
-    def _add_up(self, first: int, last: int) -> None:
-        """Sum samples first .. last - 1 over the processes."""
-        for rows in self.samples:
-            if rows.size and last > first:
-                some = rows[:, first:last]
-                some[:] = sum(self.problem.comm.allgather(some))
 
     def _update_halo(self, vector: np.ndarray) -> None:
         """Update the halo of a vector from the processes that own it."""

@@ -68,9 +68,14 @@ def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) ->
 
 def read_at(body: Body, x: np.ndarray) -> tuple[Places, np.ndarray, csr_matrix]:
     """Return the cells of points [m, d], m, the share of each cell in a point's mean, and the
-    matrix of the motion there [m d, freedoms]."""
+    matrix of the motion there [m d, freedoms]. Pieces of rock that meet at a point have equal
+    shares, however many cells they have."""
     at = places_in(body, x)
-    share = shares_of_pieces(at.point, pieces_of(body)[at.cell])
+    piece = pieces_of(body)[at.cell]
+    pieces = 1 + piece.max(initial=0)
+    key = at.point * pieces + piece
+    side, of_cell, cells = np.unique(key, return_inverse=True, return_counts=True)
+    share = 1 / (np.bincount(side // pieces)[at.point] * cells[of_cell.ravel()])
     weights = np.einsum("nk,ac->nakc", share[:, None] * at.basis, np.eye(body.components))
     return at, share, matrix_of(body, at.point, at.cell, weights, len(x))
 
@@ -80,16 +85,6 @@ def pieces_of(body: Body) -> np.ndarray:
     nodes = nodes_of_cells(body)
     first = np.broadcast_to(nodes[:, :1], nodes.shape)
     return joined(np.stack([first.ravel(), nodes.ravel()], axis=1), len(body.x))[nodes[:, 0]]
-
-
-def shares_of_pieces(point: np.ndarray, piece: np.ndarray) -> np.ndarray:
-    """Return the share of each cell [n] in the mean at its point: pieces of rock that meet there
-    have equal shares, however many cells they have."""
-    pieces = 1 + piece.max(initial=0)
-    key = point * pieces + piece
-    side, of_cell, cells = np.unique(key, return_inverse=True, return_counts=True)
-    sides = np.bincount(side // pieces)
-    return 1 / (sides[point] * cells[of_cell.ravel()])
 
 
 def _recovered(

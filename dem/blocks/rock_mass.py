@@ -159,7 +159,9 @@ def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) ->
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
         rock[which == len(sets)] = 0.0
     eta, laws = _time_constants(scene, stiffness, which), [*sets, JointLaw()]
-    rules = _rules(scene, which)
+    of_sets = [*((one.point_rule, one.contact_points) for one in sets), CUT]
+    rules: list[Rule] = [of_sets[k] for k in which]
+    rules = rules[:1] if len(set(rules)) == 1 else rules
     return columns_of(scene, laws, which, stiffness, eta=eta, rock=rock, rules=rules)
 
 
@@ -177,10 +179,3 @@ def _time_constants(scene: RockMass, stiffness: np.ndarray, which: np.ndarray) -
     of_sets = [(one.normal_stiffness, one.shear_stiffness) for one in scene.joint_sets]
     of_joints = np.array([*of_sets, (np.inf, np.inf)]).T
     return np.append(own, 0.0)[which] * stiffness / of_joints[:, which]
-
-
-def _rules(scene: RockMass, which: np.ndarray) -> list[Rule]:
-    """Return the rules of all columns, or one rule if they are equal."""
-    of_sets = [*((one.point_rule, one.contact_points) for one in scene.joint_sets), CUT]
-    named: list[Rule] = [of_sets[k] for k in which]
-    return named[:1] if len(set(named)) == 1 else named
