@@ -20,12 +20,6 @@ from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material import effective_medium
-from jointwave.cases.material.effective_medium import (
-    compliant,
-    intact,
-    joints_alone,
-    nearest_stiffness,
-)
 from jointwave.cases.material.rock import elastic_rock, wave_moduli
 from jointwave.cases.partition.joints import rocks_of, within
 from jointwave.cases.partition.lattice import by_direction
@@ -101,10 +95,10 @@ def long_wave_stiffness(scene: RockMass, further: list[JointSet]) -> np.ndarray:
     """Return C (Pa) of long waves through rigid blocks outside all regions, in Voigt's form; very
     large for strains to which no joint yields."""
     share, dim = rock_shares(scene, further)[-1], scene.domain.dimension
-    own = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
+    own = effective_medium.compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     excess = zip(share.normals, share.compliance, strict=True)
     sets = [*own, *(effective_medium.JointSet(n, *map(float, z)) for n, z in excess)]
-    return joints_alone(sets, dim)
+    return effective_medium.joints_alone(sets, dim)
 
 
 def rock_shares(scene: RockMass, further: list[JointSet]) -> list[RockShare]:
@@ -125,7 +119,7 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
         none = np.zeros((0, 2))
         return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)
     rock = elastic_rock(scene.rock)
-    fit = nearest_stiffness(intact(rock, dim), normals)
+    fit = effective_medium.nearest_stiffness(effective_medium.intact(rock, dim), normals)
     least = LEAST / np.array([rock.lame + 2 * rock.shear_modulus, rock.shear_modulus])
     index = {one.name: k for k, one in enumerate(sets)}
     direction, apart = np.full(len(sets), -1), np.ones(len(spaced))

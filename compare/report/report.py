@@ -196,8 +196,7 @@ def render(page: dict[str, Any], out: Path) -> str:
     }
     environment.filters |= {
         "picture": _picture,
-        # with no-break spaces between numbers and signs
-        "units": lambda text: text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0"),
+        "units": _unbroken,
         "percent": percent,
         "times": times,
         "in_seconds": in_seconds,
@@ -210,6 +209,11 @@ def _picture(file: Path) -> str:
     """Return an SVG or GIF image as a data URL."""
     kind = {".svg": "svg+xml", ".gif": "gif"}[file.suffix]
     return f"data:image/{kind};base64,{b64encode(file.read_bytes()).decode('ascii')}"
+
+
+def _unbroken(text: str) -> str:
+    """Return text with no-break spaces between numbers and signs."""
+    return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
 def _rows(table: pd.DataFrame) -> Markup:

@@ -30,15 +30,8 @@ from jointwave.cases.material.rock import Values, elastic_rock
 from jointwave.cases.read import load as scenes_of
 from jointwave.cases.schema.rock_mass import IntactRock, RockMass
 from jointwave.compare.engines import Progress, names, solve
-from jointwave.compare.exact.plane import parallel_joints
+from jointwave.compare.exact.plane import parallel_joints, waves
 from jointwave.compare.exact.plane.oblique_joint import Joint
-from jointwave.compare.exact.plane.waves import (
-    KINDS,
-    Kind,
-    axes_of,
-    polarisations,
-    slownesses_across,
-)
 from jointwave.compare.exact.rock_mass.conditions import all_parallel, linear_rock
 from jointwave.compare.exact.rock_mass.stack import stack_of
 from jointwave.compare.readings.recordings import variables
@@ -96,14 +89,14 @@ def transmission(
         degrees = np.array([nan])
     there = degrees.ndim == 1 and bool(((degrees >= 0) & (degrees < 90)).all())
     allowed = "must be from 0 to below 90 degrees from the joints' normal"
-    _require(incidence in ("S", *KINDS), "incidence", incidence, "must be 'P', 'S' or 'SV'")
+    _require(incidence in ("S", *waves.KINDS), "incidence", incidence, "must be 'P', 'S' or 'SV'")
     _require(there, "angles", angles, allowed)
     for name in wanted:
         known = [EXACT, *names()]
         _require(name in known, "solvers", name, f"must be of {', '.join(known)}")
     if scene.is_column:
         raise SceneError(scene.where, "", None, f"{NONE}: it is a pillar")
-    kind: Kind = "P" if incidence == "P" else "SV"
+    kind: waves.Kind = "P" if incidence == "P" else "SV"
     joints, rows = _joints_of(scene, frequency), list[list[float]]()
     points = list(product(wanted, degrees.tolist()))
     for k, (name, angle) in enumerate(points):
@@ -156,7 +149,7 @@ def _joints_of(scene: RockMass, frequency: float | None) -> ParallelJoints:
     return ParallelJoints(scene.rock, joints, spacings, period)
 
 
-def closed_form(series: ParallelJoints, incidence: Kind, angle: Values) -> np.ndarray:
+def closed_form(series: ParallelJoints, incidence: waves.Kind, angle: Values) -> np.ndarray:
     """Return the moduli R_p, R_s, T_p, T_s [4, ...]; angle : degrees, or an array of them."""
     rock, omega = elastic_rock(series.rock), 2 * pi / series.period
     at, laws, spacings = np.radians(angle), series.joints, series.spacings
@@ -216,12 +209,12 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:
     """
     wave, rock = scene.waves[0], elastic_rock(scene.rock)
     omega = 2 * pi / float(wave.period or nan)
-    kind: Kind = "P" if wave.kind == "P" else "SV"
-    axes = axes_of(rock, kind, np.array(wave.direction), scene.joint_sets[0].normal)
-    p, across = axes.slowness, slownesses_across(rock, axes.slowness)
-    waves = [int(np.argmax(axes.incident)), 2, 3, 0, 1]  # incident, reflected, transmitted
-    modes = (polarisations(rock, p).reshape(4, 2) @ axes.rows)[waves]
-    q = np.concatenate([across, -across])[waves]
+    kind: waves.Kind = "P" if wave.kind == "P" else "SV"
+    axes = waves.axes_of(rock, kind, np.array(wave.direction), scene.joint_sets[0].normal)
+    p, across = axes.slowness, waves.slownesses_across(rock, axes.slowness)
+    which = [int(np.argmax(axes.incident)), 2, 3, 0, 1]  # incident, reflected, transmitted
+    modes = (waves.polarisations(rock, p).reshape(4, 2) @ axes.rows)[which]
+    q = np.concatenate([across, -across])[which]
     joints = np.array([one.through or [0.0, 0.0] for one in scene.joint_sets]) @ axes.rows[1]
     x, z = (np.array(scene.record.points) @ axes.rows.T).T
     front = z < joints.min()
