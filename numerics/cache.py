@@ -1,5 +1,6 @@
 """The cache of compiled kernels: one folder for each version of the sources."""
 
+import atexit
 import fcntl
 import hashlib
 import os
@@ -8,6 +9,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryFile, mkdtemp
 from threading import Timer
 from time import time
 
@@ -27,10 +29,22 @@ def cache_directory(root: Path) -> Path:
     for package in PACKAGES:
         for source in sorted((root / package).rglob("*.py")):
             digest.update(source.read_bytes())
-    base = os.environ.get("NUMBA_CACHE_DIR") or Path(
-        os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "jointwave", "numba"
-    )
+    base = os.environ.get("NUMBA_CACHE_DIR") or Path(cache_home(), "jointwave", "numba")
     return Path(base, digest.hexdigest()[:16])
+
+
+def cache_home() -> str:
+    """Return the user's folder of caches, where dolfinx has its own, too; one for this process and
+    those it starts, if it cannot be written."""
+    usual = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    try:
+        os.makedirs(usual, exist_ok=True)
+        TemporaryFile(dir=usual).close()
+    except OSError:
+        usual = mkdtemp(prefix="jointwave-")
+        atexit.register(shutil.rmtree, usual, ignore_errors=True)
+    os.environ["XDG_CACHE_HOME"] = usual  # read by dolfinx when it is imported
+    return usual
 
 
 def mark_used(directory: Path) -> None:

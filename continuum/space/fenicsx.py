@@ -6,6 +6,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
+from jointwave.numerics.cache import cache_home
+
 if find_spec("dolfinx_solver") is not None:  # pip's wheel: load its MPI first
     import_module("dolfinx_solver")
 import petsc4py
@@ -13,6 +15,7 @@ import petsc4py
 petsc4py.init(["jointwave", "-no_signal_handler"])
 from petsc4py import PETSc  # noqa: E402
 
+cache_home()
 root, given = logging.getLogger(), sys.argv
 handlers, level = list(root.handlers), root.level
 sys.argv = ["jointwave"]  # dolfinx takes options there, and fails at names that are no UTF-8

@@ -38,6 +38,11 @@ def test_a_compiler_that_fails_is_told_in_one_line(tmp_path):
     assert logged in ("", SAID)
 
 
+def test_forms_are_compiled_where_no_home_can_be_written():
+    """XDG_CACHE_HOME is empty, which is as good as unset, and nothing under /proc can be made."""
+    assert run("", HOME="/proc/nobody") == ("2", SAID)
+
+
 @pytest.mark.slow
 def test_a_killed_run_leaves_nothing_that_stops_the_next(tmp_path):
     """dolfinx waits ten seconds for the other's end."""
