@@ -11,6 +11,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from jointwave.cases.errors import SceneError
 from jointwave.numerics.cache import cache_directory, make, mark_used, one_process
 
 WAIT = 1.5  # s, after which compiling is announced: cached kernels load in less, also under load
@@ -29,6 +30,8 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
     flags : nested tuples of plain values that determine the closure. They are part of the name in
     the cache, so that several processes can compile kernels of different flags at the same time.
     """
+    if numba.config.DISABLE_JIT:
+        raise SceneError("NUMBA_DISABLE_JIT", "", None, "must be 0: both engines are compiled")
     if flags is not None:
         function.__qualname__ += f".{sha256(repr(flags).encode()).hexdigest()[:8]}"
     numba.config.CACHE_DIR = str(DIRECTORY)

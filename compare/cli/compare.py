@@ -176,7 +176,7 @@ def report(asked: Report) -> None:
         return
     with locked(out, out / "figures", out / "studies"), terminal.progress("report") as advance:
         found = pages.build(out, advance, scenes=scenes, peers_table=asked.peers, stored=stored)
-    page, summary = found.page, found.summary
+    page, summary = found.page, found.page["summary"]
     if asked.as_json:
         rows, columns = summary.reset_index().values.tolist(), ["what", "pair", *summary]
         terminal.print_json({"page": str(found.file), "columns": columns, "rows": rows})
@@ -185,7 +185,7 @@ def report(asked: Report) -> None:
         terminal.say(sentence)
     if page["about"]:
         terminal.say(f"\n{page['about'].sentence}")
-    terminal.say("\nLargest relative L2 misfit over the variants of each scene, in %:")
+    terminal.say("\nLargest relative L2 misfit over the variants of each scene:")
     terminal.show_frame(summary)
     if claims := page["claims"]:
         holding = sum(claim.holds for _, claim in claims)

@@ -24,6 +24,7 @@ def main() -> None:
     """Run the command line; an error is one line on standard error and a non-zero exit code."""
     # If colorama is installed, numba appends an escape sequence to all terminal output, JSON too.
     os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")
+    os.environ["MPLBACKEND"] = "agg"  # figures are written to files, whatever a shell has set
     _open_streams()
     # Most objects are imported modules, which stay: collecting garbage took a third of a short run.
     gc.set_threshold(100_000)

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib.metadata import version
-from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -55,12 +54,6 @@ class Report(NamedTuple):
 
     file: Path
     page: dict[str, Any]
-
-    @property
-    def summary(self) -> pd.DataFrame:
-        """Largest misfit of each pair of solutions in each scene in percent, as text."""
-        cells = self.page["summary"].map(lambda x: percent(x / 100) if isfinite(x) else "")
-        return cells.rename(columns=lambda name: name.removesuffix(" (%)"))
 
 
 def build(

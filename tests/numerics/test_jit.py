@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from jointwave import joints
+from jointwave.cases.errors import SceneError
 from jointwave.numerics import jit
 from jointwave.numerics.cache import PACKAGES, UNUSED, cache_directory, make, mark_used
 from jointwave.numerics.denormals import ARM, X86, flush_denormals, restore_denormals
@@ -69,6 +70,12 @@ def test_a_kernel_is_compiled_where_nothing_can_be_written(monkeypatch):
     assert jitted(made["less"])(2.0) == 1.0
 
 
+def test_kernels_that_numba_may_not_compile_are_refused_in_a_line(monkeypatch):
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", 1)
+    with pytest.raises(SceneError, match=r"NUMBA_DISABLE_JIT: must be 0"):
+        jitted(more)
+
+
 def test_one_process_at_a_time_compiles_a_function(tmp_path, monkeypatch):
     """While another holds its lock a kernel waits, and nothing enters the cache; then it does."""
     monkeypatch.setattr(jit, "DIRECTORY", tmp_path)
@@ -116,6 +123,7 @@ def test_what_takes_long_is_announced_once(monkeypatch, caplog):
 #: Runs that between them take a kernel of every kind: of blocks, of explicit rock, of implicit.
 PROGRAM = """
 import sys
+from jointwave.cases.errors import SceneError
 from jointwave.numerics import jit
 
 compile_for = jit.compile_for
