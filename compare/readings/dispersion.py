@@ -84,13 +84,15 @@ def _along(places: np.ndarray) -> np.ndarray:
     return x
 
 
-def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray) -> xr.Dataset:
+def dispersion_theory(
+    scene: AnySource, frequency: float | Sequence[float] | np.ndarray
+) -> xr.Dataset:
     """Return phase_speed (m/s), attenuation (1/m) and quality [rock, frequency] of waves along an
     endless pillar with a scene's ordinary joints.
 
     rock : "rigid blocks" (without a quality factor), "bar" and, given intact_modulus, "jointed
-    rock". frequency : Hz; stop bands appear as attenuation. Raises SceneError for segments, random
-    joints, motion across the axis, joints that stiffen, and local damping.
+    rock". frequency : Hz, above 0; stop bands appear as attenuation. Raises SceneError for
+    segments, random joints, motion across the axis, joints that stiffen, and local damping.
     """
     pillar = pillar_of(load(scene), "dispersion_theory")
     for key, there, allowed in (
@@ -102,7 +104,10 @@ def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray)
     ):
         if there:
             raise SceneError(pillar.where, key, None, allowed)
-    p, omega = calibrate(pillar), 2 * np.pi * np.asarray(frequency, dtype=float)
+    at = np.atleast_1d(np.asarray(frequency, dtype=float))
+    if not (at > 0).all():
+        raise SceneError("dispersion_theory", "frequency", at.min(), "must be positive")
+    p, omega = calibrate(pillar), 2 * np.pi * at
     d, loss = p.spacing, 1 + 1j * omega * (p.time_constant or 0.0)
     rock, mass = (mechanisms_of(pillar, model) for model in ("jointed", "equivalent"))
     of_rock, of_mass = (loss if one is None else one.modulus(1j * omega) for one in (rock, mass))
@@ -125,5 +130,5 @@ def dispersion_theory(scene: AnySource, frequency: Sequence[float] | np.ndarray)
         "attenuation": (decay, "attenuation", "1/m"),
         "quality": (quality, "quality factor", "1"),
     }
-    at = variables("frequency", {"frequency": (np.asarray(frequency), "frequency", "Hz")})
-    return xr.Dataset(variables(("rock", "frequency"), named), {"rock": list(k), **at})
+    frequencies = variables("frequency", {"frequency": (at, "frequency", "Hz")})
+    return xr.Dataset(variables(("rock", "frequency"), named), {"rock": list(k), **frequencies})

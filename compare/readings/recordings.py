@@ -127,8 +127,22 @@ def _measured(column: Column, quantity: str) -> str:
 
 
 def dataset_of(time: np.ndarray, waves: Mapping[Any, np.ndarray]) -> xr.Dataset:
-    """Return waveforms [n] by `Where` over times [n], s, as a result at equal intervals. Raises
-    ValueError."""
+    """Return waveforms [n] by `Where` over times [n], s, as a result at equal intervals, stresses
+    at receivers of their own. Raises ValueError."""
+    groups: dict[tuple[str, str], dict[Any, np.ndarray]] = {}
+    for at, wave in waves.items():
+        dims = ("stress_y", "stress_component") if at[0] == "stress" else ("velocity_y", "axis")
+        groups.setdefault(dims, {})[at] = wave
+    found = [_at_receivers(time, one, *dims) for dims, one in groups.items()]
+    try:
+        return _even(xr.merge(found, compat="no_conflicts", join="outer"))
+    except (xr.MergeError, xr.AlignmentError):
+        raise ValueError("must hold stress and motion at the same points") from None
+
+
+def _at_receivers(
+    time: np.ndarray, waves: Mapping[Any, np.ndarray], receiver: str, components: str
+) -> xr.Dataset:
     quantities, axes, places = (list(dict.fromkeys(keys)) for keys in zip(*waves, strict=True))
     if len(waves) < len(quantities) * len(places) * len(axes):
         raise ValueError("must hold the same components at every receiver")
@@ -136,14 +150,14 @@ def dataset_of(time: np.ndarray, waves: Mapping[Any, np.ndarray]) -> xr.Dataset:
     sizes = {0 if isinstance(at, str) else len(at) for at in places}
     if len(sizes) > 1:
         raise ValueError("must name the places of all its columns, or of none")
-    receiver = "point" if sizes & {2, 3} else "velocity_y"
-    found = xr.Dataset(coords={"time": time, "axis": axes})
+    receiver = "point" if sizes & {2, 3} else receiver
+    found = xr.Dataset(coords={"time": time, components: axes})
     for quantity in quantities:
         rows = [[waves[quantity, axis, at] for axis in axes] for at in places]
-        found[quantity] = (receiver, "axis", "time"), np.array(rows)
+        found[quantity] = (receiver, components, "time"), np.array(rows)
     names = zip(RECEIVERS[receiver], np.transpose(known), strict=False)  # z in space
     found = found.assign_coords({name: (receiver, at) for name, at in names})
-    return _even(found.transpose(receiver, "time", "axis"))
+    return found.transpose(receiver, "time", components)
 
 
 def _even(result: xr.Dataset) -> xr.Dataset:

@@ -109,6 +109,8 @@ def test_peaks_and_intensities_of_an_acceleration(files):
         header = text.replace("acceleration_x@7", one).replace("acceleration_y@7", other)
         files["two.txt"].write_text(header)  # directions of one recorder
         assert jw.ppv(files["two.txt"]).item() == pytest.approx(jw.ppv(velocity).item(), rel=2e-4)
+    files["two.txt"].write_text("time,stress@7,velocity@7.25\n0,9,0\n1,8,0.5\n")
+    assert jw.ppv(files["two.txt"]).values.tolist() == [0.5]
     ramp = ([0.0, 1.0], [0.0, 3.0])
     intensity = jw.arias(ramp, gravity=10.0, quantity="acceleration")
     assert intensity.item() == pytest.approx(np.pi / 20 * 3.0)  # of 9 t^2
@@ -187,6 +189,9 @@ NO_RECORDINGS = {
     "a place": ("time,velocity@1,a\n0,0,0\n1,1,1\n", {}, "places of all its columns, or of none"),
     "components": (
         "time,velocity_x@1,velocity_y@2\n0,0,0\n1,1,1\n", {}, "same components at every receiver"
+    ),
+    "points": (
+        "time,stress_xx@[1,2],velocity_x@[1,3]\n0,0,0\n1,1,1\n", {}, "motion at the same points"
     ),
     "a name twice": ("time,a [g],a [g]\n0,0,0\n1,1,1\n", {}, "must name each column once"),
     "no motion": ("time,stress@1\n0,0\n1,1\n", {}, "velocity: or acceleration must be recorded"),

@@ -164,6 +164,13 @@ def test_what_has_no_theory_of_dispersion_is_refused(column, changes, words):
         dispersion_theory(column(**changes), [50.0])
 
 
+def test_a_theory_of_dispersion_is_of_one_frequency_or_several_above_zero(column):
+    one = dispersion_theory(column(), 50.0)
+    assert one.equals(dispersion_theory(column(), [20.0, 50.0]).isel(frequency=[1]))
+    with pytest.raises(SceneError, match=r"frequency = 0\.0: must be positive"):
+        dispersion_theory(column(), [0.0, 50.0])
+
+
 @pytest.mark.parametrize(
     "solver, rock", [("lattice", "rigid blocks"), ("jointed-bar", "jointed rock")]
 )
