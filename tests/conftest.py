@@ -192,7 +192,7 @@ def in_toml():
 
     def text(value):
         if isinstance(value, dict) and not value.keys().isdisjoint(("title", "time")):
-            return "".join(f"{key} = {inline(one)}\n" for key, one in value.items())
+            return "".join(f"{json.dumps(key)} = {inline(one)}\n" for key, one in value.items())
         return inline(value)
 
     return text
@@ -218,6 +218,18 @@ def changed(in_toml):
                     at.append({})
                 at[last] = tomllib.loads(one.replace(key, "x", 1))["x"]
         return in_toml(tables)
+
+    return text
+
+
+@pytest.fixture(scope="session")
+def spoilt(changed):
+    """Return a function of a good scene's text and a mistake: the text with its changes, and what
+    its line must begin with: the key with its value as changed last, or what follows an arrow."""
+
+    def text(good, mistake):
+        changes, _, named = mistake.partition(" -> ")
+        return changed(good, changes), named or changes.rpartition("; ")[2].removeprefix("no ")
 
     return text
 

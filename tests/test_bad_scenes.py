@@ -325,13 +325,11 @@ def test_the_good_scene_is_good(tmp_path):
 
 
 @pytest.mark.parametrize("first, mistake, words", EACH, ids=[one for _, one, _ in EACH])
-def test_mistake_is_one_line(first, mistake, words, tmp_path, changed, line_of):
+def test_mistake_is_one_line(first, mistake, words, tmp_path, spoilt, line_of):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "pillar.msh").touch()
-    changes, _, blamed = mistake.partition(" -> ")
-    text = changed(GOOD, f"{first}; {changes}" if first else changes)
+    text, named = spoilt(GOOD, f"{first}; {mistake}" if first else mistake)
     line = line_of(write(tmp_path / "scene.toml", text))
-    named = blamed or changes.rpartition("; ")[2].removeprefix("no ")
     assert line.partition(": ")[2].startswith(named), line
     assert_words(words, line)
 

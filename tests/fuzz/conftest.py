@@ -20,33 +20,15 @@ FUZZ = int(os.environ.get("FUZZ", "1"))
 def gmsh_files(tmp_path_factory):
     """Return files of a pillar of three blocks of 0.4 x 0.5 m with its rock and joints as groups,
     in the plane and in space, of gmsh's versions 2.2 and 4.1, as text and binary."""
-    from jointwave.continuum.mesh.session import gmsh_session
+    from tests.continuum.drawing import drawn
 
-    file, found = tmp_path_factory.mktemp("gmsh") / "pillar.msh", []
-    for dim in (2, 3):
-        with gmsh_session() as gmsh:
-            occ, z = gmsh.model.occ, -0.2 * (dim - 2)
-            make, sizes = (
-                (occ.addRectangle, (0.4, 0.5)) if dim == 2 else (occ.addBox, (0.4, 0.5, 0.4))
-            )
-            blocks = [(dim, make(-0.2, 0.5 * i, z, *sizes)) for i in range(3)]
-            occ.fragment(blocks[:1], blocks[1:])
-            occ.synchronize()
-            groups = {"rock": gmsh.model.getEntities(dim), "joint": []}
-            for y in (0.5, 1.0):
-                box = (-1, y - 1e-3, -1, 1, y + 1e-3, 1)
-                groups["joint"] += gmsh.model.getEntitiesInBoundingBox(*box, dim - 1)
-            for name, entities in groups.items():
-                size, tags = entities[0][0], [tag for _, tag in entities]
-                gmsh.model.setPhysicalName(size, gmsh.model.addPhysicalGroup(size, tags), name)
-            gmsh.option.setNumber("Mesh.MeshSizeMin", 0.5)
-            gmsh.model.mesh.generate(dim)
-            for version, binary in ((2.2, 0), (2.2, 1), (4.1, 0), (4.1, 1)):
-                gmsh.option.setNumber("Mesh.MshFileVersion", version)
-                gmsh.option.setNumber("Mesh.Binary", binary)
-                gmsh.write(str(file))
-                found.append(file.read_bytes())
-    return found
+    path = tmp_path_factory.mktemp("gmsh") / "pillar.msh"
+    return [
+        drawn(path, kind, elements=1, ends=False, version=version, binary=binary).read_bytes()
+        for kind in ("triangle", "tetrahedron")
+        for version in (2.2, 4.1)
+        for binary in (0, 1)
+    ]
 
 
 @pytest.fixture
