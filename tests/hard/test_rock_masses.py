@@ -8,15 +8,15 @@ import pytest
 from closed_forms.modes import modes, of_modes
 from hard_runs import CUBES, EPS, ERROR, FIFTHS, REFEREE, ROUND_OFF, HardRun
 from jointwave.cases.geometry.locate import blocks_at
+from jointwave.cases.geometry.measure import frames_of
 from jointwave.cases.loads import history_of, step_means
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.compare.engines import solve
+from jointwave.compare.exact.blocks.system import carried, contacts_of, relative
 from jointwave.compare.exact.rock_mass.block_lattice import masses, reads
 from jointwave.compare.misfit.metrics import relative_l2
-from tests.cases.material.block_stiffness import jump
-from tests.cases.partition.polygons import points_between
 
 BRICKS, GRAZING, SLIDING = "hard/struck-bricks", "hard/grazing-wave", "hard/sliding-bricks"
 LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
@@ -56,16 +56,15 @@ def test_free_blocks_move_as_leapfrog_in_closed_form(changes, variant):
 
 
 def root_of(scene, partition):
-    """Return R [2 p, 3 N] of K = R^T R: sqrt(k) times the opening and the slip of every point."""
+    """Return R [3 c, 3 N] of K = R^T R: sqrt(k) times what each contact opens, slips and turns."""
     contacts, joints = partition.contacts, rigid_joints(scene, [])
-    stiffness = (k[contacts.joint_set] for k in (joints.normal, joints.shear))
-    blocks, frame, arm, springs = points_between(partition, contacts, scene.joint_sets, *stiffness)
-    rows = np.sqrt(springs)[:, None, :, None] * jump(frame[:, None], arm[:, :, None])
-    found = np.zeros((*springs.shape, partition.count, 3))
-    each = np.arange(len(springs))
-    found[each, :, blocks[:, 0]] = -rows[:, 0]
-    found[each, :, blocks[:, 1]] = rows[:, 1]
-    return found.reshape(springs.size, -1)
+    springs = np.stack([joints.normal, joints.shear], axis=1)[contacts.joint_set]
+    met = contacts_of(partition, contacts, springs, 0 * springs)
+    moved = relative(met, partition.count, 3).toarray().reshape(len(contacts), 3, -1)
+    moved[:, :2] = frames_of(contacts.normal) @ moved[:, :2]
+    bends = springs[:, 0] * np.trace(contacts.second_moment, axis1=1, axis2=2)
+    stiffness = np.column_stack([springs * contacts.area[:, None], bends])
+    return (np.sqrt(stiffness)[:, :, None] * moved).reshape(-1, 3 * partition.count)
 
 
 def unit_force(scene, partition):
@@ -74,7 +73,7 @@ def unit_force(scene, partition):
     at = np.array([load.at])
     ((block, *_),) = blocks_at(partition, at)
     found = np.zeros((partition.count, 3))
-    found[block] = jump(np.array([load.direction]), at - partition.centroid[block])[0]
+    found[block] = load.direction @ carried(at - partition.centroid[block], 3)[0, :2]
     return found.ravel()
 
 

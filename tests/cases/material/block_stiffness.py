@@ -1,19 +1,15 @@
-"""Motion at contact points that follows from displacements and rotations of rigid blocks."""
+"""The stiffness of rigid blocks in the plane, assembled contact by contact."""
 
 import numpy as np
 
-#: The axes that each rotation turns into each other, by the number of dimensions.
-TURNS: dict[int, tuple[list[int], list[int]]] = {
-    1: ([], []),
-    2: ([0], [1]),
-    3: ([1, 2, 0], [2, 0, 1]),
-}
+from jointwave.compare.exact.blocks.system import contacts_of, relative, resistance
 
 
-def jump(along: np.ndarray, arm: np.ndarray) -> np.ndarray:
-    """Return what a block's displacements and rotations give of motion along a vector [..., d] at
-    the end of an arm [..., d], m: rows [..., freedoms]."""
-    along, arm = np.broadcast_arrays(along, arm)
-    i, j = TURNS[along.shape[-1]]
-    turning = arm[..., i] * along[..., j] - arm[..., j] * along[..., i]
-    return np.concatenate([along, turning], axis=-1)
+def stiffness(blocks):
+    """Return the matrix of all contacts between blocks [3 N, 3 N], whose springs are evenly along
+    them."""
+    cut, own, c = blocks.cut, blocks.columns, blocks.contacts.column
+    springs = np.stack([own.normal[c], own.shear[c]], axis=1)
+    met = contacts_of(cut, cut.contacts, springs, 0 * springs)
+    moved = relative(met, cut.count, 3)
+    return (moved.T @ resistance(met, springs, 3) @ moved).toarray()

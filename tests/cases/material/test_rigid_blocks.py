@@ -14,7 +14,7 @@ from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import ElasticRock
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.dem.prepare import blocks_of
-from tests.cases.material.block_stiffness import jump
+from tests.cases.material.block_stiffness import stiffness
 
 UNIT = ElasticRock(1.0, np.sqrt(3.0), 1.0)  # lambda = mu = 1
 
@@ -153,23 +153,6 @@ def test_joints_alone_carry_what_sends_no_short_wave(rock_with):
         found(rock_with(joint, loads=quick))
 
 
-def frequencies(blocks, stiffness):
-    """Return the squared frequencies of blocks (1/s2), assembled spring by spring; stiffness :
-    normal and in shear of each column, Pa/m."""
-    met, freedoms = blocks.contacts, blocks.masses.shape[1]
-    whole = np.zeros((blocks.count * freedoms,) * 2)
-    for c, ((i, j), points) in enumerate(zip(met.blocks, blocks.points, strict=True)):
-        for *place, area in points:
-            at = met.centre[c] + place @ met.frame[c, 1:]
-            for k, axis in zip(stiffness[:, met.column[c]], met.frame[c], strict=True):
-                row = np.zeros(len(whole))
-                for block, sign in ((i, -1), (j, 1)):
-                    own = slice(block * freedoms, (block + 1) * freedoms)
-                    row[own] = sign * jump(axis, at - blocks.centroid[block])
-                whole += k * area * np.outer(row, row)
-    return eigh(whole, block_diag(*blocks.masses), eigvals_only=True)
-
-
 @st.composite
 def crossing(draw):
     """Two sets of joints, of which the second may end at the first."""
@@ -191,7 +174,7 @@ def test_critical_step_of_blocks_is_bounded_on_both_sides(rock_with, sets):
         blocks = blocks_of(scene)
     except SceneError:  # joints that end at others may all miss so small a domain
         reject()
-    squared = frequencies(blocks, np.array(found(scene)[:2]))
+    squared = eigh(stiffness(blocks), block_diag(*blocks.masses), eigvals_only=True)
     exact = 2 / np.sqrt(squared[-1])
     assert blocks.critical <= exact * (1 + 1e-9) and exact <= 2**0.5 * blocks.critical * (1 + 1e-9)
     assert (squared[:3] < 1e-6 * squared[-1]).all()

@@ -8,7 +8,6 @@ import numpy as np
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.locate import blocks_at
 from jointwave.cases.geometry.periodic import contacts_across
-from jointwave.cases.material.contact_points import points_of
 
 
 def block_at(found, points):
@@ -21,21 +20,6 @@ def periodic_contacts(found, side, sets):
     pair = {"left": ("left", "right"), "bottom": ("bottom", "top")}[side]
     names = [one.name for one in sets]
     return contacts_across(found, int(side == "bottom"), pair, names)
-
-
-def points_between(found, contacts, sets, normal, shear, shift=(0.0, 0.0)):
-    """Blocks [p, 2], frame [p, 2, 2], arms [p, 2, 2] and springs [p, 2] of the points of contacts
-    of these stiffnesses [c], where all sets have as many; blocks j stand elsewhere by `shift`."""
-    rules = np.array([points_of(one.point_rule, one.contact_points) for one in sets])
-    x, weight = np.moveaxis(rules[contacts.joint_set], 1, 0)
-    contact = np.repeat(np.arange(len(contacts)), x.shape[1])
-    x, weight = x.reshape(-1, 1), weight.reshape(-1, 1)
-    at = contacts.ends[contact, 0] * (1 - x) + contacts.ends[contact, 1] * x
-    blocks, axis = contacts.blocks[contact], contacts.normal[contact]
-    arm = at[:, None] - found.centroid[blocks] - np.array([(0.0, 0.0), shift])
-    frame = np.stack([axis, np.stack([-axis[:, 1], axis[:, 0]], axis=1)], axis=1)
-    stiffness = np.stack([normal, shear], axis=1) * contacts.area[:, None]
-    return blocks, frame, arm, weight * stiffness[contact]
 
 
 def closed(found, tolerance):

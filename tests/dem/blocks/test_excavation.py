@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from jointwave.compare.exact.blocks.system import contacts_of, relative, resistance
 from jointwave.dem import simulate
 from jointwave.dem.kernel.model import state_at_rest
 from jointwave.dem.prepare import prepared
 from jointwave.dem.relaxation import start
+from tests.cases.material.block_stiffness import stiffness
 
 STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
 TENSOR = np.array([[4e6, 5e5], [5e5, 5e6]])
@@ -48,15 +48,6 @@ def at_rest(scene):
     return system, state
 
 
-def stiffness(system):
-    """Return the matrix of all contacts [3 N, 3 N], which have springs evenly along them."""
-    cut, own, c = system.blocks.cut, system.blocks.columns, system.blocks.contacts.column
-    springs = np.stack([own.normal[c], own.shear[c]], axis=1)
-    met = contacts_of(cut, cut.contacts, springs, 0 * springs)
-    moved = relative(met, cut.count, 3)
-    return (moved.T @ resistance(met, springs, 3) @ moved).toarray()
-
-
 def released(system):
     """Return the forces [N, 3] that walls lose: of the tensor on every edge at the opening."""
     part, sides = system.blocks.cut, system.blocks.sides
@@ -73,7 +64,7 @@ def test_the_state_after_excavation_is_that_of_the_assembled_equations(excavated
     out rigid motion; to the relaxation's tolerance, 1e-13 of 5 MPa on 54 m, over the stiffness of
     the slowest mode, 3e-3 of the largest."""
     system, state = at_rest(excavated({"point_rule": "gauss"}))
-    K, f, count = stiffness(system), released(system), system.blocks.cut.count
+    K, f, count = stiffness(system.blocks), released(system), system.blocks.cut.count
     mass = np.sqrt(system.blocks.inertia.ravel())
     scaled, held = np.linalg.eigh(K / np.outer(mass, mass))
     assert (scaled[:3] < 1e-9 * scaled[-1]).all() and scaled[3] > 1e-4 * scaled[-1]
