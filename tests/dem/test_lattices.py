@@ -1,100 +1,107 @@
-"""Lattices of blocks in periodic patches, in the plane and in space, against the closed form of
-leapfrog's own plane waves.
+"""Lattices and brickwork between periodic sides, in the plane and in space, against their assembled
+equations.
 
-A Bloch wave of the infinite lattice with frequency omega steps on at Omega, sin(Omega dt / 2) =
-omega dt / 2, so that the kernel is held to round-off in all its branches.
+A Bloch wave of the infinite lattice with frequency omega, and a mode of bricks, step on at Omega,
+sin(Omega dt / 2) = omega dt / 2, so that the kernel is held to round-off in all its branches.
 """
-
-from itertools import product
 
 import numpy as np
 import pytest
 
 from closed_forms.bloch import leapfrog, modes, periodic
-from jointwave.cases.geometry.measure import frames_of
+from jointwave.cases import load_tables
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
-from jointwave.dem.contacts.chunks import chunks_of
-from jointwave.dem.contacts.faces import Contacts
 from jointwave.dem.kernel.leapfrog import march
-from jointwave.dem.kernel.model import (
-    Blocks,
-    KernelFlags,
-    Model,
-    held_by,
-    samples_for,
-    state_at_rest,
-)
-from jointwave.joints.law import law, parts_of, table_of
+from jointwave.dem.kernel.model import samples_for, state_at_rest
+from jointwave.dem.prepare import prepared
 
-SIDE, DENSITY, NORMAL, SHEAR = 2.0, 2500.0, 3e9, 1.1e9
+SIDE, DENSITY, STIFFNESS = 2.0, 2500.0, (3e9, 1.1e9)  # m, kg/m3; normal and in shear, Pa/m
 COUNT = {2: 12, 3: 6}
-STEPS, TOLERANCE = 5000, 1e-10
+#: Normals of joints: up, to the east and to the north.
+ATTITUDES = (
+    {"dip": 0.0},
+    {"dip": 90.0, "dip_direction": 90.0},
+    {"dip": 90.0, "dip_direction": 0.0},
+)
+POINTS = {"friction_angle": 30.0, "cohesion": 1e20, "point_rule": "gauss", "contact_points": 2}
+ACROSS = (("left", "right"), ("bottom", "top"), ("front", "back"))
 
 
-def lattice(dim, points):
-    """Return the model of a periodic lattice, with contact points or with whole faces."""
-    count = COUNT[dim]
-    numbers = np.arange(count**dim).reshape((count,) * dim)
-    pairs = [
-        np.stack([numbers.ravel(), np.roll(numbers, -1, axis=a).ravel()], 1) for a in range(dim)
-    ]
-    normals = np.repeat(np.eye(dim), count**dim, axis=0)
-    area, second = SIDE ** (dim - 1), SIDE ** (dim + 1) / 12
-    faces = Contacts(
-        blocks=np.concatenate(pairs),
-        area=np.full(len(normals), area),
-        frame=frames_of(normals),
-        arm=SIDE / 2 * np.stack([normals, -normals], axis=1),
-    )
-    gauss = SIDE / np.sqrt(12)
-    places = np.array(list(product((gauss, -gauss), repeat=dim - 1)))
-    rule = np.column_stack([places, np.full(len(places), area / len(places))])
-    stiffness = np.full(len(normals), NORMAL)
-    shear = np.full(len(normals), SHEAR)
-    own = law(stiffness, None, np.ones(len(normals), dtype=bool), shear_stiffness=shear)
-    # As blocks of scenes have them, whose kernel serves: some held, joints that differ, a ledger.
-    parts, none = parts_of(own)._replace(planar=dim == 2, varied=True), np.zeros(0, dtype=int)
-    form = KernelFlags(dim, True, parts, points, False, False, False, True, True)
-    mass = DENSITY * SIDE**dim
-    inertia = np.tile([mass] * dim + [mass * SIDE**2 / 6] * form.rotations, (count**dim, 1))
-    moments = [second] if dim == 2 else [second, second, 0.0]
-    dt = 0.3 / np.sqrt(16 * NORMAL * area / mass)
-    chunks = chunks_of(
-        faces,
-        count**dim,
-        form.freedoms,
-        law=np.arange(len(normals)) % 2,
-        points=np.tile(rule, (len(normals), 1, 1)) if points else None,
-        second=None if points else np.tile(moments, (len(normals), 1)),
-    )
-    blocks = Blocks(inertia, dt, 1.0, 0.0, np.zeros(dim))
-    one = np.diag(inertia[0])[None]
-    held = held_by(0 * one, np.zeros(1, int), one, dt)
-    return Model(form, blocks, chunks, table_of(own).repeat(2, axis=1), held, none, none)
+def system_of(size, laws, pairs):
+    """Return blocks of these joints up, to the east and to the north between pairs of periodic
+    sides, in rock so stiff that joints have their own stiffness."""
+    sets = [one | law for one, law in zip(ATTITUDES, laws, strict=False)]
+    if len(size) == 2:
+        sets = [{k: v for k, v in one.items() if k != "dip_direction"} for one in sets]
+    tables = {
+        "title": "blocks",
+        "domain": {"size": size},
+        "rock": {"density": DENSITY, "intact_modulus": 1e25, "intact_poisson": 0.2},
+        "joint_sets": [one | {"through": [0.0] * len(size)} for one in sets],
+        "boundaries": dict.fromkeys(sum(pairs, ()), "periodic"),
+        "time": {"duration": 1.0},
+        "record": {"points": [[x / 2.1 for x in size]], "interval": 1.0},
+    }
+    return prepared(load_tables(tables))
 
 
-@pytest.mark.parametrize("points", [False, True], ids=["faces", "points"])
+def law_of(name, stiffness, **keys):
+    normal, shear = stiffness
+    return {"name": name, "normal_stiffness": normal, "shear_stiffness": shear} | keys
+
+
+def steps_on(system, motion, steps):
+    """Hold blocks to a motion, a function of time of the size 1, to 1e-10 of it after steps."""
+    model, dt = system.model, system.time.dt
+    state = state_at_rest(model)
+    state.u[:], state.v[:] = motion(0.0), (motion(0.0) - motion(-dt)) / dt
+    march(model, state, samples_for(model, 0), 2 * steps, (1, 1 + steps))
+    np.testing.assert_allclose(state.u, motion(steps * dt), rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("rule", [{}, POINTS], ids=["faces", "points"])
 @pytest.mark.parametrize("waves", [[1, 0], [2, 3], [1, 0, 0], [1, 2, 1]])
-def test_bloch_waves_step_on_as_leapfrog_has_them(waves, points):
-    """All branches of a lattice keep their form over 5,000 steps."""
+def test_bloch_waves_step_on_as_leapfrog_has_them(waves, rule):
+    """All branches of a lattice keep their form over 5,000 steps; joints that can fail have
+    points."""
     dim = len(waves)
-    model, one = lattice(dim, points), blocks_of_domain(Domain(size=[SIDE] * dim), [])
-    angles = 2 * np.pi * np.array(waves) / COUNT[dim]
-    cell = periodic(one, DENSITY, np.array([[NORMAL, SHEAR]]), [], range(dim))
-    frequencies, motions = modes(cell, angles / SIDE)
-    places = np.stack(np.unravel_index(np.arange(COUNT[dim] ** dim), (COUNT[dim],) * dim), 1)
-    dt = model.blocks.dt
+    laws = [law_of(str(k), STIFFNESS, spacing=SIDE, **rule) for k in range(dim)]
+    system = system_of([SIDE * COUNT[dim]] * dim, laws, ACROSS[:dim])
+    assert system.model.form.points == (rule is POINTS)
+    one = blocks_of_domain(Domain(size=[SIDE] * dim), [])
+    k = 2 * np.pi * np.array(waves) / COUNT[dim] / SIDE
+    frequencies, motions = modes(periodic(one, DENSITY, [STIFFNESS], [], range(dim)), k)
+    phase = np.exp(1j * system.blocks.cut.centroid @ k)[:, None]
     for omega, motion in zip(frequencies, motions.T, strict=True):
-        stepped = leapfrog(omega, dt)
-        shape = np.exp(1j * places @ angles)[:, None] * motion
+        stepped, shape = leapfrog(omega, system.time.dt), phase * motion / np.abs(motion).max()
 
         def at(time, shape=shape, stepped=stepped):
             return (shape * np.exp(-1j * stepped * time)).real
 
-        state = state_at_rest(model)
-        state.u[:], state.v[:] = at(0.0), (at(0.0) - at(-dt)) / dt
-        march(model, state, samples_for(model, 0), 2 * STEPS, (1, 1 + STEPS))
-        np.testing.assert_allclose(
-            state.u, at(STEPS * dt), rtol=0, atol=TOLERANCE * np.abs(shape).max()
-        )
+        steps_on(system, at, 5000)
+
+
+BED, HEAD = (2e10, 8e9), (1e10, 5e9)
+
+
+@pytest.mark.parametrize("rule", [{"point_rule": "midpoint", "contact_points": 3}, {}])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_modes_of_running_bond_stand(dim, rule):
+    """Bricks of 0.6 m (by 0.5 m) by 0.3 m, whose sides repeat but at the free ends of the wall:
+    from the slowest that is no rigid motion to the fastest. Three midpoints carry 8/9 of the
+    bending stiffness."""
+    bond = {"spacing": 0.6, "ends_at": ["bed"], "offset": 0.5}
+    laws = [law_of("bed", BED, spacing=0.3), law_of("head", HEAD, **bond)]
+    laws.append(law_of("collar", BED, spacing=0.5))
+    laws = [one | rule for one in laws[:dim]]
+    system = system_of([1.8, *[1.0] * (dim - 2), 1.2], laws, ACROSS[1:dim])
+    springs, cut = np.array([BED, HEAD, BED][:dim]), system.blocks.cut
+    names = [one["name"] for one in laws]
+    cell = periodic(cut, DENSITY, springs, names, range(1, dim), 8 / 9 if rule else 1.0)
+    omega, shapes = modes(cell, np.zeros(dim))
+    assert (omega[:dim] < 1e-6 * omega[-1]).all() and omega[dim] > 1e-3 * omega[-1]
+    for k in (dim, dim + 1, len(omega) // 3, len(omega) // 2, len(omega) - 1):
+        shape = shapes[:, k].real.reshape(cut.count, -1)
+        shape, stepped = shape / np.abs(shape).max(), leapfrog(omega[k], system.time.dt)
+        steps_on(system, lambda t, shape=shape, w=stepped: shape * np.cos(w * t), 2000)

@@ -28,7 +28,8 @@ ROCK = {
     "intact_poisson": 0.2,
 }
 #: y = 4.5 m comes first; K_n = 6e9 / 1.5 = 4e9, K'_n = 4e9 / (1 + 1.5 * 4e9 / 2.4e10) = 3.2e9.
-SOFT = {"y": 4.5, "spacing_stiffness": 6e9, "damping_ratio": 0.05}
+LAYER = {"y": 4.5, "spacing_stiffness": 6e9}
+SOFT = LAYER | {"damping_ratio": 0.05}
 #: As stiff as the others, under another dashpot.
 STIFF = {"y": 1.5, "damping_ratio": 0.2}
 
@@ -171,11 +172,7 @@ def test_tension_is_barred_joint_by_joint():
 
 DASHPOTS = {
     "each by its own ratio and stiffness": (0.03, [SOFT, STIFF], [3e-4, 4.5e-5, 9.68245836e-5]),
-    "a layer takes the ratio of the joints": (
-        0.03,
-        [{"y": 4.5, "spacing_stiffness": 6e9}],
-        [4.5e-5, 4.5e-5, 5.80947502e-5],
-    ),
+    "a layer takes the ratio of the joints": (0.03, [LAYER], [4.5e-5, 4.5e-5, 5.80947502e-5]),
     "a layer alone": (None, [SOFT, {"y": 1.5}], [0, 0, 9.68245836e-5]),
     "a stiff joint alone": (None, [STIFF], [3e-4, 0, 0]),
     "an undamped layer": (0.03, [SOFT | {"damping_ratio": 0.0}], [4.5e-5, 4.5e-5, 9e-6]),
@@ -201,7 +198,7 @@ def test_time_constants_of_joints(ratio, layers, eta):
 def test_rayleigh_damping():
     """0.6 / 20 + 0.004 * 10 / 2 = 0.05 at 10 rad/s; 0.6 / 60 + 0.004 * 30 / 2 = 0.07 at 30."""
     law = {"frequencies": [10 / (2 * pi), 30 / (2 * pi)], "ratios": [0.05, 0.07]}
-    p = properties(damping={"rayleigh": law}, soft_layers=[{"y": 4.5, "spacing_stiffness": 6e9}])
+    p = properties(damping={"rayleigh": law}, soft_layers=[LAYER])
     assert p.mass_damping == pytest.approx(0.6, rel=1e-13)
     assert p.time_constant == pytest.approx(0.004, rel=1e-13)
     assert p.joint_time_constant == pytest.approx(np.full(3, 0.004), rel=1e-13)
@@ -241,52 +238,33 @@ def test_damping_of_the_motion_is_as_given_and_none_at_zero():
     assert p.mass_damping is None and p.local_damping is None and Damping().alpha is None
 
 
-def around(own, others):
-    """Return the values of the three joints where the middle one has a layer of its own."""
-    return [others, own, others]
-
-
+RUBS, HOLDS = {"friction_angle": 45.0}, {"cohesion": 2e5}
+LESS, TAN_30 = {"friction_angle": 30.0}, 1 / sqrt(3)
 BRITTLE = {"tensile_strength": 1e5, "fracture_energy": 30.0}
-#: Keys of all joints and of the middle one, and what follows; w_c = 2 * 30 / 1e5, 2 * 50 / 4e5.
+TOUGH = {"tensile_strength": 4e5, "fracture_energy": 50.0}
+#: Keys of all joints and of the middle one, and what follows for the middle one and for the others;
+#: w_c = 2 * 30 / 1e5, 2 * 50 / 4e5.
 STRENGTHS = {
     "elastic": ({}, {}, {}),
-    "friction": ({"friction_angle": 45.0}, {}, {"friction": [1.0] * 3}),
-    "cohesion": ({"cohesion": 2e5}, {}, {"cohesion": [2e5] * 3}),
-    "the friction of one": (
-        {},
-        {"friction_angle": 30.0},
-        {"friction": around(1 / sqrt(3), 0.0), "cohesion": around(0.0, UNLIMITED)},
-    ),
-    "the cohesion of one": ({}, {"cohesion": 30.0}, {"cohesion": around(30.0, UNLIMITED)}),
-    "a layer inherits": (
-        {"friction_angle": 45.0},
-        {"cohesion": 3e4},
-        {"friction": [1.0] * 3, "cohesion": around(3e4, 0.0)},
-    ),
+    "friction": (RUBS, {}, {"friction": (1.0, 1.0)}),
+    "cohesion": (HOLDS, {}, {"cohesion": (2e5, 2e5)}),
+    "the friction of one": ({}, LESS, {"friction": (TAN_30, 0.0), "cohesion": (0.0, UNLIMITED)}),
+    "the cohesion of one": ({}, {"cohesion": 30.0}, {"cohesion": (30.0, UNLIMITED)}),
+    "a layer inherits": (RUBS, {"cohesion": 3e4}, {"friction": (1.0, 1.0), "cohesion": (3e4, 0.0)}),
     "slip of its own": (
-        {"friction_angle": 45.0, "cohesion": 2e5},
-        {"friction_angle": 30.0, "cohesion": 1e5, "residual_cohesion": 4e4},
-        {
-            "friction": around(1 / sqrt(3), 1.0),
-            "cohesion": around(1e5, 2e5),
-            "residual_cohesion": around(4e4, 2e5),
-        },
+        RUBS | HOLDS,
+        LESS | {"cohesion": 1e5, "residual_cohesion": 4e4},
+        {"friction": (TAN_30, 1.0), "cohesion": (1e5, 2e5), "residual_cohesion": (4e4, 2e5)},
     ),
     "softening of its own": (
-        BRITTLE,
-        {"tensile_strength": 4e5, "fracture_energy": 50.0},
-        {"tensile_strength": around(4e5, 1e5), "critical_opening": around(2.5e-4, 6e-4)},
+        *(BRITTLE, TOUGH),
+        {"tensile_strength": (4e5, 1e5), "critical_opening": (2.5e-4, 6e-4)},
     ),
     "all of it": (
-        BRITTLE | {"friction_angle": 45.0, "cohesion": 2e5, "residual_cohesion": 1e5},
+        BRITTLE | RUBS | HOLDS | {"residual_cohesion": 1e5},
         {},
-        {
-            "friction": [1.0] * 3,
-            "cohesion": [2e5] * 3,
-            "residual_cohesion": [1e5] * 3,
-            "tensile_strength": [1e5] * 3,
-            "critical_opening": [6e-4] * 3,
-        },
+        {"friction": (1.0, 1.0), "cohesion": (2e5, 2e5), "residual_cohesion": (1e5, 1e5)}
+        | {"tensile_strength": (1e5, 1e5), "critical_opening": (6e-4, 6e-4)},
     ),
 }
 
@@ -296,7 +274,9 @@ def test_strength_of_every_joint(joints, layer, found):
     """Its own, that of [joints], or none: then it never slips and never breaks."""
     p = properties(joints=joints, soft_layers=[{"y": 3.0, **layer}])
     for name in NAMES:
-        assert getattr(p, name) == (exact(np.array(found[name])) if name in found else None), name
+        own, others = found.get(name, (None, None))
+        expected = None if own is None else exact(np.array([others, own, others]))
+        assert getattr(p, name) == expected, name
     with pytest.raises(AttributeError):
         p.strenght  # noqa: B018
 

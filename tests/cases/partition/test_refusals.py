@@ -15,50 +15,36 @@ from tests.cases.partition.polygons import periodic_contacts
 
 SIZE = {"size": [10.0, 6.0]}
 ROWS = {"dip": 0.0, "spacing": 1.0}
+SCATTERED = {"scatter": 0.01, "seed": 1}
 NEAR = {"dip": 0.0, "through": [0.0, 2.005]}
+AWAY = {"dip": 45.0, "through": [20.0, 3.0]}
 TUNNEL = SIZE | {"openings": [[[4.0, 1.0], [6.0, 1.0], [6.0, 2.5], [4.0, 2.5]]]}
 DENT = {"outline": [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [7.0, 6.0], [4.0, 3.5], [0.0, 3.5]]}
 
-#: Joint sets, the domain, what the line holds, and the number of blocks once the cause is gone.
+
+def wide(spacing):
+    return ROWS | {"spacing": spacing}
+
+
+#: Joint sets, the domain, and what the line holds.
+MISSED = "joint_sets[0]: does not cut the domain, or only"
+UNCUT = 'domain: a block is not convex ... domain.non_convex = "cut" ... , 2.5]'
+THIN = "is 0.005 m wide ... domain.least_width = 0.01 ... near [5, 2.0025]"
+MANY = "gives about 600,001 blocks ... about 1.5 GB of memory; 500 MB available"
 REFUSED = {
-    "a spacing beyond the domain": (
-        [ROWS | {"spacing": 7.0}],
-        SIZE,
-        "joint_sets[0]: does not cut the domain, or only",
-    ),
-    "the same with scatter": (
-        [ROWS | {"spacing": 7.0, "scatter": 0.01, "seed": 1}],
-        SIZE,
-        "joint_sets[0]: does not cut the domain, or only",
-    ),
-    "joints along those of another set": (
-        [ROWS, ROWS | {"spacing": 2.0}],
-        SIZE,
-        "joint_sets[1]: does not cut",
-    ),
+    "a spacing beyond the domain": ([wide(7.0)], SIZE, MISSED),
+    "the same with scatter": ([wide(7.0) | SCATTERED], SIZE, MISSED),
+    "joints along those of another set": ([ROWS, wide(2.0)], SIZE, "joint_sets[1]: does not cut"),
     "a joint outside": (
-        [{"dip": 45.0, "through": [20.0, 3.0]}],
+        [AWAY],
         SIZE,
         "joint_sets[0].through: must lie in the domain, near [20, 3]",
     ),
-    "a tunnel inside a row": (
-        [ROWS],
-        TUNNEL,
-        'domain: a block is not convex ... domain.non_convex = "cut" ... , 2.5]',
-    ),
+    "a tunnel inside a row": ([ROWS], TUNNEL, UNCUT),
     "an outline that is not convex": ([ROWS], DENT, "corner of the outline ... near [4, 3.5]"),
-    "a row that is too thin": (
-        [ROWS, NEAR],
-        SIZE | {"slivers": "refuse"},
-        "is 0.005 m wide ... domain.least_width = 0.01 ... near [5, 2.0025]",
-    ),
-    "more than the memory": (
-        [ROWS | {"spacing": 1e-5}],
-        SIZE,
-        "joint_sets[0].spacing = 1e-05: gives about 600,001 blocks ... about 1.5 GB of memory; "
-        "500 MB available",
-    ),
-    "far more": ([ROWS | {"spacing": 1e-30}], SIZE, "joint_sets[0].spacing = 1e-30: gives about"),
+    "a row that is too thin": ([ROWS, NEAR], SIZE | {"slivers": "refuse"}, THIN),
+    "more than the memory": ([wide(1e-5)], SIZE, f"joint_sets[0].spacing = 1e-05: {MANY}"),
+    "far more": ([wide(1e-30)], SIZE, "joint_sets[0].spacing = 1e-30: gives about"),
 }
 
 
@@ -78,8 +64,8 @@ def test_a_scene_that_cannot_be_cut_is_refused_in_a_line(
 @pytest.mark.parametrize(
     ("sets", "domain", "count"),
     [
-        ([ROWS | {"spacing": 5.5}], SIZE, 2),
-        ([ROWS | {"spacing": 5.5, "scatter": 0.01, "seed": 1}], SIZE, 2),
+        ([wide(5.5)], SIZE, 2),
+        ([wide(5.5) | SCATTERED], SIZE, 2),
         ([ROWS], TUNNEL | {"non_convex": "cut"}, 6 + 1 + 2),
         ([ROWS, NEAR], SIZE | {"slivers": "merge"}, 6),
     ],
