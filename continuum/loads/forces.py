@@ -191,11 +191,12 @@ class Loads:
         return found
 
     def impulse(self, mass: np.ndarray, steps: int, stride: int) -> float:
-        """Estimate the time integral of |F| in the norm of 1 / m, sqrt(J), from some steps."""
+        """Estimate the time integral of |F| in the norm of 1 / m, sqrt(J), from some steps, with
+        both ends: a wave has no force at t = 0."""
         felt, own = 0.0, mass[self.freedom]
         many = stride * max(1, AT_ONCE // max(1, own.size))
-        for first in range(0, steps, many):
-            force = self.at(first, min(first + many, steps), stride)
+        for first in range(0, steps + stride, many):
+            force = self.at(first, min(first + many, steps + stride), stride)
             felt += float(np.sqrt((force**2 / own).sum(axis=1)).sum())
         return self.dt * stride * felt
 

@@ -61,6 +61,16 @@ def test_nothing_beyond_the_bounds_is_kept_where_no_ledger_is(rock_mass):
     assert np.abs(result.velocity).max() < 1e6
 
 
+def test_the_first_instants_of_a_wave_are_within_the_bounds(rock_mass):
+    """A run of one sample: the field of waves in jointed rock is at rest at t = 0 only."""
+    wave = PUSH | {"kind": "P", "direction": [0.0, 1.0], "shape": "ricker"}
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "quiet")
+    record, of = {"points": [[2.0, 1.0]], "interval": 4e-4}, {"dip": 0.0, "through": [3.0, 2.0]}
+    del wave["side"]
+    scene = rock_mass(of, waves=[wave], boundaries=sides, record=record, time={"duration": 4e-4})
+    assert np.abs(simulate(scene).velocity[:, -1]).max() > 0
+
+
 @pytest.mark.parametrize("cell", ["triangle", "quadrilateral"])
 def test_blocks_move_as_their_nodes_do(made, cell):
     """Rigid motions, each of its own."""
