@@ -110,6 +110,11 @@ class _ShortRepr(reprlib.Repr):
 _short = _ShortRepr().repr
 
 
+def placed(place: Iterable[float], digits: int = 6) -> str:
+    """Return a place as text, "[20, 30]"."""
+    return f"[{', '.join(f'{x:.{digits}g}' for x in place)}]"
+
+
 def printable(text: str) -> str:
     """Return external text as one safe line without control sequences.
 

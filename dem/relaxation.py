@@ -17,7 +17,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, placed
 from jointwave.cases.material.closure import stresses
 from jointwave.dem.blocks.rigid import constants
 from jointwave.dem.contacts.chunks import LANES, Chunks
@@ -352,5 +352,4 @@ class BlockRelaxation:
         dim = self.centroid.shape[1]
         moved = np.linalg.norm(change.reshape(self.count, -1)[:, :dim], axis=1)
         k = int(moved.argmax())
-        place = ", ".join(f"{x:.4g}" for x in self.centroid[k].round(6) + 0.0)
-        return f"the block at [{place}]"
+        return f"the block at {placed(self.centroid[k].round(6) + 0.0, 4)}"

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.cases.errors import StoppedError
+from jointwave.cases.errors import StoppedError, placed
 from jointwave.cases.sampling import Clock
 from jointwave.cases.scene_type import AnyScene
 
@@ -92,10 +92,9 @@ def _stopped(run: Guarded, found: list[int], place: Any) -> StoppedError:
     """Return the error of a run from `Guard.found`; place : of the fastest point, m."""
     (step, what, sound), scene, dt = found, run.scene, run.time.dt
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
-    at = ", ".join(f"{x:.6g}" for x in place)
     error = StoppedError(
         f"{name}: {run.engine} {'gained energy' if what == ENERGY else 'diverged'} at t = "
-        f"{step * dt:.6g} s, step {step} of {dt:.4g} s, fastest at [{at}] m: {_cause(run)}"
+        f"{step * dt:.6g} s, step {step} of {dt:.4g} s, fastest at {placed(place)} m: {_cause(run)}"
     )
     error.samples = max(0, sound) // run.time.stride + 1
     return error

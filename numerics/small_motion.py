@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.errors import StoppedError
+from jointwave.cases.errors import StoppedError, placed
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -59,8 +59,8 @@ def refuse_large_motion(
     if found is None or not (found.overlaps or found.by > LARGEST * found.size):
         return
     name = f"{scene.where}, {scene.name}" if scene.name else scene.where
-    at = ", ".join(f"{x:.4g}" for x in found.place)
-    place = f"[{at}]" if len(found.place) > 1 else f"y = {at}"
+    at = placed(found.place, 4)
+    place = at if len(found.place) > 1 else f"y = {at[1:-1]}"
     wall = "a wall" if found.other < 0 else f"block {found.other + 1}"
     what = (
         f"overlaps {wall}, which it did not touch, by {found.by:.3g} m"

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from jointwave.cases.errors import placed
 from jointwave.cases.geometry.relations import composed, distinct, merged, sums
 
 OUTSIDE = -1  #: instead of a cell index: outside the domain, or in an opening
@@ -23,7 +24,7 @@ class GeometryError(ValueError):
     """A domain that cannot be cut into convex blocks: `at` a place, `cause`, `key` of the scene."""
 
     def __init__(self, at: np.ndarray | None, cause: str, key: str = "domain") -> None:
-        place = "" if at is None else ", near [{}]".format(", ".join(f"{x:.6g}" for x in at))
+        place = "" if at is None else f", near {placed(at)}"
         self.at, self.cause, self.key = at, cause, key
         super().__init__(f"{cause}{place}")
 

@@ -7,6 +7,7 @@ import shapely
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
+from jointwave.cases.errors import placed
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.measure import frames
 from jointwave.cases.geometry.pieces import clipped
@@ -20,7 +21,7 @@ AGAINST = -0.999  # cosine between the normals of faces that may touch
 
 def near(x: np.ndarray) -> str:
     """Return the mean place of some points as text."""
-    return " near [{}]".format(", ".join(f"{place:.6g}" for place in x.mean(axis=0)))
+    return f" near {placed(x.mean(axis=0))}"
 
 
 Piece = tuple[np.ndarray, int, int]

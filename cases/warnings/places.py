@@ -1,10 +1,11 @@
 """Warnings about the places of joints and receivers in a rock mass, one line each."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import combinations, product
 
 import numpy as np
 
+from jointwave.cases.errors import placed
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.partition.joints import region_at, within
@@ -16,11 +17,6 @@ from jointwave.cases.schema.rock_mass import RockMass
 
 NEAR = 0.05  # largest distance of a receiver from its joint, over the domain's size
 COINCIDENT = 1e-9  # distance below which joints coincide, over the domain's size
-
-
-def spelled(place: Sequence[float]) -> str:
-    """Return a place as text, "[20, 30]"."""
-    return "[" + ", ".join(f"{x:g}" for x in place) + "]"
 
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
@@ -77,7 +73,7 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
     away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (
-            f"record.joints[{k}] = {spelled(places[k])} is {away[k]:.3g} m from the nearest joint, "
+            f"record.joints[{k}] = {placed(places[k])} is {away[k]:.3g} m from the nearest joint, "
             "whose motion it records"
         )
 
@@ -98,7 +94,7 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
             sides = sides_at(blocks_of_scene(scene), points[on], len(scene.joint_sets))
             on = on[[len(blocks) > 1 for blocks in sides]]
         for key, at, what in (named[i] for i in on):
-            yield f"{key} = {spelled(at)} lies on a joint of joint_sets[{k}], {what}"
+            yield f"{key} = {placed(at)} lies on a joint of joint_sets[{k}], {what}"
 
 
 def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
@@ -115,7 +111,7 @@ def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
         if welded or (rollers and distance(np.array(at), rollers) <= tiny):
             place = "a welded boundary of regions" if welded else "a roller side"
             yield (
-                f"record.points[{i}] = {spelled(at)} lies on {place}, where the stress of rigid "
+                f"record.points[{i}] = {placed(at)} lies on {place}, where the stress of rigid "
                 "blocks is off by up to 50 %, however small they are: half a block away, "
                 f"{block / 2:.3g} m, it converges"
             )

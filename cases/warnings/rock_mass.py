@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from jointwave.cases.checks.rock_mass import GRAZING
+from jointwave.cases.errors import placed
 from jointwave.cases.incident import across, plane_wave
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.closure import stresses
@@ -16,7 +17,7 @@ from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.warnings.places import COINCIDENT, RULES_OF_PLACES, spelled
+from jointwave.cases.warnings.places import COINCIDENT, RULES_OF_PLACES
 from jointwave.cases.warnings.sources import of_resolution, onset
 
 NEAR_SIDE = 1e-6  # shift from a side into the rock, over the domain's size
@@ -29,7 +30,7 @@ def met(scene: RockMass) -> dict[str, Any]:
     fails = any(one.tension is False or any(getattr(one, k) for k in keys) for _, one in sets)
     rock, acting = elastic_rock(scene.rock), [one for one in scene.pulses if one.amplitude]
     arrivals = (
-        (f"{key}[{i}] = {spelled(place)}", min(_arrival(scene, x, np.array(place)) for x in acting))
+        (f"{key}[{i}] = {placed(place)}", min(_arrival(scene, x, np.array(place)) for x in acting))
         for key in ("points", "joints")
         for i, place in enumerate(getattr(scene.record, key))
     )
@@ -75,7 +76,7 @@ def _of_directions(scene: RockMass) -> Iterator[str]:
     if scene.gravity is not None and scene.gravity.direction[-1] >= 0:
         way = "upwards" if scene.gravity.direction[-1] else "sideways"
         up = "z" if scene.in_space else "y"
-        yield f"gravity.direction = {spelled(scene.gravity.direction)} pulls {way}: {up} points up"
+        yield f"gravity.direction = {placed(scene.gravity.direction)} pulls {way}: {up} points up"
 
 
 def _of_wavelength(scene: RockMass) -> Iterator[str]:
@@ -173,7 +174,7 @@ def _of_starts(scene: RockMass) -> Iterator[str]:
         early = begun > onset(wave) + EARLY * scene.time.duration
         if wave.amplitude and wave.through is not None and early:
             yield (
-                f"waves[{i}].through = {spelled(wave.through)}: the wave enters the domain "
+                f"waves[{i}].through = {placed(wave.through)}: the wave enters the domain "
                 f"{begun:.3g} s before t = 0, when the rock is at rest: move it back"
             )
 

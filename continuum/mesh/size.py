@@ -6,6 +6,7 @@ from math import ceil, sqrt
 import numpy as np
 
 from jointwave.cases.effects import is_spatial
+from jointwave.cases.errors import placed
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.calibrate import calibrate
@@ -104,8 +105,8 @@ def of_coarse_cells(
     wave = np.sqrt(least / density) / frequency
     nodes = scene.numerics.continuum.order * wave / size.max(axis=1)
     worst = int(nodes.argmin())
-    place = ", ".join(f"{x:.4g}" for x in corners[worst].mean(axis=0))
-    gives = f"{'rock of a script' if scripted else 'the mesh'}: elements at [{place}] have"
+    place = placed(corners[worst].mean(axis=0), 4)
+    gives = f"{'rock of a script' if scripted else 'the mesh'}: elements at {place} have"
     where = f"nodes per wavelength at {frequency:.4g} Hz, below which 95 % of the energy lies"
     longest = float(size.max(axis=1)[worst] * nodes[worst] / LEAST_BLOCKS)
     remedy = "" if scene.is_column else f": numerics.continuum.size = {longest:.2g} m"

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, placed
 from jointwave.cases.scene_type import AnyScene
 from jointwave.continuum.stepping.balance import LAST_DIGITS, Balance
 from jointwave.continuum.stepping.newton import Outcome, newton
@@ -194,5 +194,5 @@ class _Static:
         """Return in words where the rock moved farthest in the last step, and the acceleration that
         it would have without the drag."""
         k, body = int(np.abs(self.moved).argmax()), self.problem.body
-        place = ", ".join(f"{x:.4g}" for x in body.x[k // body.components].round(6) + 0.0)
-        return f"the rock at [{place}] moves on, at {np.abs(self.moved[k]):.3g} m/s2"
+        place = placed(body.x[k // body.components].round(6) + 0.0, 4)
+        return f"the rock at {place} moves on, at {np.abs(self.moved[k]):.3g} m/s2"

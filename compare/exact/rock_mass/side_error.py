@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from jointwave.cases.checks.rock_mass import GRAZING
+from jointwave.cases.errors import placed
 from jointwave.cases.incident import plane_wave
 from jointwave.cases.partition.shape import Face, distance, shape_of
 from jointwave.cases.schema.rock_mass import RockMass
-from jointwave.cases.warnings.places import spelled
 from jointwave.cases.warnings.rock_mass import fastest, plane_waves
 from jointwave.cases.warnings.sources import onset
 from jointwave.compare.exact.rock_mass import beyond_strength, normal_incidence
@@ -59,7 +59,7 @@ class SideError(NamedTuple):
 
 def _first(places: list[tuple[float, ...]]) -> str:
     more = [f"{len(places) - 3} more"] if len(places) > 3 else []
-    return ", ".join([*map(spelled, places[:3]), *more])
+    return ", ".join([*map(placed, places[:3]), *more])
 
 
 def beside_loads(scene: RockMass) -> Iterator[str]:

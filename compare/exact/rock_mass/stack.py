@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointwave.cases.errors import placed
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.incident import PlaneWave, plane_wave
@@ -156,10 +157,9 @@ def begins_before(scene: RockMass, stack: JointStack) -> Answer:
         late = first_scattered(stack, incident)
         if late < -BEGUN * scene.time.duration:
             place = incident.through + late * incident.speed * incident.direction
-            where = ", ".join(f"{x:.6g}" for x in place)
             return Answer(
                 f"waves[{i}] reaches a joint before t = 0: move it back, to "
-                f"waves[{i}].through = [{where}] or further"
+                f"waves[{i}].through = {placed(place)} or further"
             )
     return Answer()
 
