@@ -12,8 +12,6 @@ class SceneError(ValueError):
     """A scene that cannot be simulated; one line per mistake with place, key, value and what is
     allowed.
 
-    Parameters
-    ----------
     where : the scene file (or other source) with the mistake.
     key : dotted key, `pillar.length`; empty if the mistake is not in one key.
     value : the value found, or None for a missing key.

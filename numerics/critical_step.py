@@ -13,8 +13,6 @@ from math import sqrt
 def critical_step(largest: Callable[[float, float], float], damped: bool) -> float:
     """Return the critical step, s.
 
-    Parameters
-    ----------
     largest : function of (a, b) that returns the largest eigenvalue of M^-1 (a K + b C).
     damped : whether C is present; without it one eigenvalue suffices.
     """

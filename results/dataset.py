@@ -68,8 +68,6 @@ def dataset(
 ) -> xr.Dataset:
     """Return a result with the common schema of all engines and exact solutions.
 
-    Parameters
-    ----------
     engine : "dem", "continuum-jointed", ..., or the name of an exact solution.
     time : float array [n], s.
     quantities : by name, float arrays in SI, stress and traction compression positive.

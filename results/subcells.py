@@ -27,8 +27,6 @@ CORNERS: dict[str, list[tuple[int, ...]]] = {
 def linear_cells(cell: str, nodes: np.ndarray) -> np.ndarray:
     """Return the linear cells between a cell's nodes, int array [parts, corners], in VTK's order.
 
-    Parameters
-    ----------
     cell : "interval", "triangle", "quadrilateral", "tetrahedron" or "hexahedron".
     nodes : float array [nodes, dim], a full lattice of any order on the unit cell, in any order;
         points of a quadrilateral or hexahedron need not be equally spaced.

@@ -15,8 +15,6 @@ CONVEX = 1e-6  #: tolerated area error, over the area, of an outline of merged f
 class Facets:
     """Convex plane pieces of block surfaces: contacts of two blocks, or the boundary of one.
 
-    Attributes
-    ----------
     blocks : int array [c, 2], i and j, i < j; on the boundary j is OUTSIDE. Ordered by i, then j.
     normal : float array [c, d], unit vector out of block i.
     area : float array [c], m^(d-1); 1 in one dimension.
@@ -55,8 +53,6 @@ class Facets:
 class Blocks:
     """A domain cut into convex blocks, numbered so that neighbours have similar indices.
 
-    Attributes
-    ----------
     body : complex whose cells are the blocks, with the same indices.
     volume : float array [n], m^d. centroid : float array [n, d], m.
     second_moment : float array [n, d, d], m^(d+2), integrals of x_i x_j about the centroid.

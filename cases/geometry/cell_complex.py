@@ -48,8 +48,6 @@ class Halves(NamedTuple):
 class Complex:
     """Convex cells of a domain in d dimensions, with their facets of d - 1 dimensions.
 
-    Attributes
-    ----------
     vertices : float array [v, d], m.
     bounds : for k = 1 to d - 1, pairs of a k-cell and a (k-1)-cell that bounds it, int arrays [m,
         2] sorted by the k-cell: the ends of edges, then the edges of faces.

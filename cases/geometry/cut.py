@@ -27,8 +27,6 @@ class Planes:
     on plane j, and 2 j between planes j - 1 and j; edges, faces and cells have the range of their
     vertices' codes.
 
-    Attributes
-    ----------
     normal : float array [d], unit vector.
     family : int array [cells], family of each cell, or -1 for cells that are not cut.
     places : float array [p], m, of all planes, increasing, further apart than the tolerance.

@@ -13,8 +13,6 @@ from jointwave.cases.geometry.relations import groups
 class Pieces:
     """Cells of a complex that are to be merged; one of its cells gives each piece its number.
 
-    Attributes
-    ----------
     root : int array [count], the piece that each cell belongs to.
     thickness : volume over surface of each cell, m, by cell number.
     """

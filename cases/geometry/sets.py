@@ -19,8 +19,6 @@ SPREAD = 3**0.5
 class PlaneSet:
     """A set of parallel planes, or one plane, in d dimensions.
 
-    Attributes
-    ----------
     name : that other sets refer to.
     normal : float array [d], unit vector.
     along : float array [d - 1, d], unit vectors in the plane, which define the sense of offsets.

@@ -23,8 +23,6 @@ ROCK = -1  #: instead of a region index: rock outside all regions
 class Solid:
     """A polygon in the plane, or a prism in space.
 
-    Attributes
-    ----------
     corners : float array [k, 2], m, counter-clockwise in the axes of the base.
     axes : float array [d, d], unit vectors: two of the base, and in space the prism's axis.
     span : start and end of the prism along its axis, m; unused in the plane.

@@ -25,8 +25,6 @@ RIGID = 100.0
 class JointedRock:
     """A pillar of one rock with equal joints.
 
-    Attributes
-    ----------
     block_count : number of blocks N.
     spacing, side : block thickness and side of the square section, m.
     density : kg/m3.

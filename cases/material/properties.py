@@ -74,8 +74,6 @@ class Properties(JointedRock, Strength):
     """Properties of a pillar for engines and exact solutions, with the strength of its joints. If
     blocks or joints differ, scalar attributes are means.
 
-    Attributes
-    ----------
     contact_y : float array [N + 1], start of each block and end of the last one, m.
     stiffness, shear_stiffness : float arrays [N - 1], K'_n, K'_s between rigid blocks, Pa/m.
     own_stiffness, own_shear_stiffness : float arrays [N - 1], the joints' own K_n and K_s, (6)

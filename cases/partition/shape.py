@@ -37,8 +37,6 @@ Face = tuple[np.ndarray, np.ndarray]  #: corners [k, d], m, and outward unit nor
 class Shape:
     """A domain in the plane or in space.
 
-    Attributes
-    ----------
     hull : its convex hull in the plane, its bounding box in space, as one cell.
     faces : of its outer boundary; in the plane edges, counter-clockwise.
     solids : removed from the hull, with the side number of their faces: 0 for a bay of the outline,

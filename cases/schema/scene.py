@@ -21,8 +21,6 @@ from jointwave.cases.schema.values import Pair, Positive, Table, Words
 class SceneBase(Table):
     """What pillars and rock masses share: title, time, loads and sides.
 
-    Attributes
-    ----------
     kind : as text.
     is_column : whether it is a row of blocks along y with free sides and an axial stress in each
         section, not a body in two or three dimensions.

@@ -34,8 +34,6 @@ def twins(matrix: Any, vector: np.ndarray, load: LoadHistory, times: np.ndarray)
     more integration points, and in every interval a relative perturbation NOISE of each state,
     always with the same sign.
 
-    Parameters
-    ----------
     matrix, vector : A [m, m] (1/s), dense or sparse, and b [m], in units that make A's entries
         similar in size.
     load : f; smooth between its breaks, at most about one cycle per interval.

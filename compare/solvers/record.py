@@ -134,8 +134,6 @@ def without_steps(scene: AnyScene) -> Prepared:
 class Solver:
     """An engine or an exact solution: its model, names, line style and functions.
 
-    Attributes
-    ----------
     rock, form : how it resolves the rock mass, and how its solution is obtained.
     label : in legends, besides its name. sentence : start of an engine's sentence in the report's
         lead.

@@ -162,8 +162,6 @@ def spread(side: float, moment: np.ndarray, x: np.ndarray) -> np.ndarray:
 class Loads:
     """All forces with a given history.
 
-    Attributes
-    ----------
     freedom : the loaded freedoms [k].
     """
 

@@ -24,8 +24,6 @@ class SharedLeapfrog(Leapfrog):
     """Explicit steps of a problem by the processes of its communicator. Methods and properties are
     collective and return whole vectors.
 
-    Attributes
-    ----------
     problem : the whole problem. samples : of the whole, after each `take`. state : of the share.
     """
 

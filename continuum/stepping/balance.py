@@ -48,8 +48,6 @@ class Forces(NamedTuple):
 class Balance:
     """The forces of a problem.
 
-    Attributes
-    ----------
     damping, quiet : of rock with mass-proportional damping, and of quiet sides [freedoms,
     freedoms], N s/m. free : freedoms that are not held. past : at the start. memory : function of
     dt. springs : function of dt, in front of dashpots; None without. ends : freedoms of quiet sides

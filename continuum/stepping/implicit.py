@@ -58,8 +58,6 @@ class Moment(NamedTuple):
 class Implicit:
     """Implicit steps of a problem.
 
-    Attributes
-    ----------
     now : the state at the last step. samples : recorded ones. counts : iterations, factorisations
     and halvings. work_of_a_step : approximately, over that of an explicit step.
     """

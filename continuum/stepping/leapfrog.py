@@ -23,8 +23,6 @@ BUFFER = 500_000  # components of forces with a history in memory at a time
 class Leapfrog:
     """Explicit steps of a problem.
 
-    Attributes
-    ----------
     state : `arrays.State`, in the order of `product.place`. samples : recorded ones. dt : s.
     halo : places of other processes' freedoms, which follow in vectors.
     """

@@ -90,8 +90,6 @@ def rocks(p: Properties, moduli: list[float], relaxation: Any) -> tuple[RockFrom
 class Bar:
     """A bar with interfaces.
 
-    Attributes
-    ----------
     length : m.
     rocks : in order, the first from the start.
     joint_y, joint_compliance, joint_time_constant : float arrays [joints], sorted; m, m/Pa, s.

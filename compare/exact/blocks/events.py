@@ -61,8 +61,6 @@ def integrate(
 ) -> "Motion":
     """Return the motion of blocks under their load or loads.
 
-    Parameters
-    ----------
     times : increasing, s; the blocks are at rest at the first.
     period : of the load (s), if it has one.
     noise : random perturbation of every step, relative to its terms, that mimics round-off; the

@@ -158,8 +158,6 @@ def first_order(
 ) -> BlockSystem:
     """Return the first-order form of bodies.
 
-    Parameters
-    ----------
     mass : [bodies, f], per degree of freedom, kg and kg m2; 0 for massless faces, which touch
         blocks and the ground by dashpots, and infinite for walls. Blocks come first.
     push : forces of a unit drive on the first contact [f], N and N m.

@@ -173,8 +173,6 @@ def stack_of(
 ) -> PulseStack:
     """Return the joints in the order in which a pulse meets them.
 
-    Parameters
-    ----------
     rocks : of the layers in the order of `offsets`, [N + 1].
     joints : in the order of `offsets`, [N].
     kind, direction, polarisation : of the pulse, see `axes_of`.

@@ -51,8 +51,6 @@ def motion(
 ) -> PlaneMotion:
     """Return the motion caused by a force, with error bounds that hold at any time.
 
-    Parameters
-    ----------
     direction : of the force, unit vector [d], d = 2 for a line and 3 for a point.
     force, rate : f (N/m or N), continuous, and its rate (per s), at times (s).
     breaks : ascending, s: f is 0 up to the first and from the last on (which may be inf), and
