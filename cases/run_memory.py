@@ -17,6 +17,14 @@ from jointwave.cases.size import LARGEST_VARIABLE, excess, spoken
 #: Bytes per step for the load's mean and its intermediate arrays, by formula and by table.
 LOAD_OF_STEP, TABLE_OF_STEP = 24, 64
 LEDGER = 5  # least number of terms of an energy ledger
+#: Components of the largest waveform of a receiver, and of all of them, by key of [record]: along
+#: one axis of axial motion, and of any motion.
+AXIAL = {"velocity": (1, 2), "stress": (1, 1)}
+COMPONENTS = {
+    "y": {"velocity": (3, 9), "stress": (2, 3)},
+    "xy": {"points": (3, 7), "joints": (2, 4)},
+    "xyz": {"points": (6, 12), "joints": (3, 6)},
+}
 #: Copies of a waveform in memory: sampled, and written.
 COPIES = 2
 
@@ -53,18 +61,9 @@ def value_of(scene: Any, key: str) -> object:
 
 
 def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
-    """Return the memory of waveforms and energy ledger, written copies included, bytes. Raises
-    SceneError if a waveform does not fit into a file."""
-    if scene.is_column:
-        axes = 3 if spatial else 1
-        of_place = {
-            "velocity": (axes, axes * (3 if spatial else 2)),
-            "stress": (axes - spatial, axes),
-        }
-    else:
-        dim = scene.domain.dimension
-        stresses = dim * (dim + 1) // 2
-        of_place = {"points": (stresses, 2 * dim + stresses), "joints": (dim, 2 * dim)}
+    """Return the memory of waveforms and energy ledger, written copies included, bytes; spatial :
+    whether a pillar moves across its axis. Raises SceneError if one does not fit into a file."""
+    of_place = AXIAL if scene.axes == "y" and not spatial else COMPONENTS[scene.axes]
     rows = {f"record.{k}": (len(getattr(scene.record, k)), *each) for k, each in of_place.items()}
     samples = scene.time.duration / scene.interval + 1
     key, (places, most, _) = max(rows.items(), key=lambda row: row[1][0] * row[1][1])

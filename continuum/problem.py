@@ -57,7 +57,7 @@ def problem_of(scene: AnyScene, found: SceneBody) -> Problem:
     """Return a scene as a problem, without loads that have a history.
 
     Masses, forces and energies of a pillar in one or two dimensions are per unit area or thickness;
-    `receivers.sections.extent_of` gives the factor.
+    `scene.left_out` gives the factor.
     """
     (body, own), stress, other = with_law(found), None, None
     steady = [one for one in (weight_of(scene, body), released(scene, body)) if one is not None]

@@ -11,13 +11,15 @@ import xarray as xr
 from jointwave.cases.effects import active_effects
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.warnings import warnings
-from jointwave.results.labels import AXES, label
+from jointwave.results.labels import RECEIVERS, label
 from jointwave.results.stress import stress_components
 
 #: Terms of an energy ledger.
 TERMS = ("kinetic", "elastic", "viscous", "friction", "fracture", "boundary", "gravity", "work")
 
 OF_SECTIONS, OF_JOINTS = ("stress", "shear"), ("traction", "gap", "slip")
+#: The dimension of the receivers of each key of [record].
+RECEIVERS_OF = dict(zip(("stress", "velocity", "points", "joints"), RECEIVERS, strict=True))
 #: The dimension of the components of each quantity, and the names of components.
 COMPONENTS = {
     "stress": "stress_component",
@@ -111,16 +113,22 @@ def dataset(
 
 def _receivers(scene: AnyScene) -> Coordinates:
     """Return the coordinates of the receivers."""
-    record: Any = scene.record
-    if scene.is_column:
-        lines = {"stress_y": record.stress, "velocity_y": record.velocity}
-        return {name: ((name,), np.array(y, dtype=float)) for name, y in lines.items()}
     found: Coordinates = {}
-    for name, places in {"point": record.points, "joint_point": record.joints}.items():
-        at = np.array(places, dtype=float).reshape(-1, scene.domain.dimension)
-        found[name] = (name,), np.arange(len(at), dtype=np.int32)
-        found |= {f"{name}_{axis}": ((name,), x) for axis, x in zip(AXES, at.T, strict=False)}
+    for key, name in RECEIVERS_OF.items():
+        if (places := getattr(scene.record, key, None)) is None:
+            continue
+        at = np.array(places, dtype=float).reshape(-1, len(scene.axes))
+        found[name] = (name,), np.arange(len(at), dtype=np.int32)  # unless places identify them
+        found |= {x: ((name,), of) for x, of in zip(RECEIVERS[name], at.T, strict=False)}
     return found
+
+
+def key_of(quantity: str, axes: int) -> str:
+    """Return the key of [record] that lists the receivers of a quantity; axes : number of their
+    coordinates."""
+    if axes == 1:
+        return "stress" if quantity in OF_SECTIONS else "velocity"
+    return "joints" if quantity in OF_JOINTS else "points"
 
 
 def _variable(
@@ -128,10 +136,7 @@ def _variable(
 ) -> tuple[tuple[str, ...], np.ndarray]:
     """Return a quantity and its dimensions: receivers, time, and components if it has several;
     motion along one axis gets a dimension of one component."""
-    if scene.is_column:
-        receivers = "stress_y" if name in OF_SECTIONS else "velocity_y"
-    else:
-        receivers = "joint_point" if name in OF_JOINTS else "point"
+    receivers = RECEIVERS_OF[key_of(name, len(scene.axes))]
     dims = (receivers, *time, COMPONENTS.get(name, ""))
     if dims[-1] == "axis" and values.ndim < len(dims):
         values = values[..., None]

@@ -54,7 +54,7 @@ def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
     if rock.quality_factor is None:
         return None
     found = fitted(rock.quality_factor, *rock.quality_frequencies(scene.pulses))
-    if model == "jointed" or not scene.is_column:
+    if model == "jointed":
         return found
     p = calibrate(scene)
     assert p.intact_modulus is not None

@@ -213,14 +213,9 @@ class RockMass(SceneBase):
     rotation: ClassVar[str] = "small"
 
     @property
-    def in_space(self) -> bool:
-        """Whether the scene is in space, not in the plane."""
-        return self.domain.dimension == 3
-
-    @property
-    def in_plane(self) -> bool:
-        """Whether the scene is in the plane."""
-        return self.domain.dimension == 2
+    def axes(self) -> str:
+        """The axes of the domain."""
+        return "xyz"[: self.domain.dimension]
 
     @property
     def mesh_path(self) -> Path | None:
@@ -231,6 +226,10 @@ class RockMass(SceneBase):
     def reach(self) -> float:
         """The diagonal of the domain's bounding box, m."""
         return float(np.linalg.norm(self.domain.extent))
+
+    def left_out(self, dim: int) -> float:
+        """Return 1: a model in the plane is per metre of thickness."""
+        return 1.0
 
     @property
     def excavated(self) -> bool:

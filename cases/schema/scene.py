@@ -24,6 +24,7 @@ class SceneBase(Table):
     kind : as text.
     is_column : whether it is a row of blocks along y with free sides and an axial stress in each
         section, not a body in two or three dimensions.
+    axes : of the coordinates of receivers.
     law_tables, source_tables : tables of joint laws, and of loads and waves. side_table : table of
         boundary conditions.
     """
@@ -45,6 +46,16 @@ class SceneBase(Table):
     def where(self) -> str:
         """File and variant of the scene, else its title, for messages."""
         return self._where or self.title
+
+    @property
+    def in_plane(self: Any) -> bool:
+        """Whether receivers are in the plane."""
+        return len(self.axes) == 2
+
+    @property
+    def in_space(self: Any) -> bool:
+        """Whether receivers are in space."""
+        return len(self.axes) == 3
 
     @property
     def laws(self) -> dict[str, JointLaw]:
@@ -120,12 +131,11 @@ class Scene(SceneBase):
 
     kind: ClassVar[str] = "pillar"
     is_column: ClassVar[Literal[True]] = True
+    axes: ClassVar[str] = "y"
     law_tables: ClassVar[tuple[str, ...]] = ("joints", "soft_layers")
     source_tables: ClassVar[tuple[str, ...]] = ("load",)
     side_table: ClassVar[str] = "ends"
     #: The same attributes as a rock mass without these.
-    in_plane: ClassVar[Literal[False]] = False
-    in_space: ClassVar[Literal[False]] = False
     excavated: ClassVar[Literal[False]] = False
     waves: ClassVar[tuple[()]] = ()
     joint_sets: ClassVar[tuple[()]] = ()
@@ -155,6 +165,10 @@ class Scene(SceneBase):
     def shakes_base(self) -> bool:
         """Whether the load is the motion of a rigid base under a fixed start."""
         return self.shakes(self.load)
+
+    def left_out(self, dim: int) -> float:
+        """Return the section's extent beyond a model of `dim` dimensions, m2, m, or 1."""
+        return float(self.pillar.side ** (3 - dim))
 
     @property
     def boundaries(self) -> tables.Ends:

@@ -171,8 +171,8 @@ def static_state(result: xr.Dataset) -> xr.Dataset:
 
 def _has_static_state(result: xr.Dataset) -> bool:
     """Return whether a result starts from a computed static state, which has a tolerance."""
-    starts, in_plane = result.attrs.get("starts"), result.attrs.get("kind") == "rock mass"
-    return starts == "at rest under gravity" or (starts == "prestressed" and in_plane)
+    starts, given = result.attrs.get("starts"), "prestress" in result.attrs
+    return starts == "at rest under gravity" or (starts == "prestressed" and not given)
 
 
 def rms(waveform: np.ndarray) -> float:

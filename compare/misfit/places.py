@@ -13,7 +13,7 @@ import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.units import UNITS
-from jointwave.results.dataset import NAMES, OF_JOINTS, OF_SECTIONS
+from jointwave.results.dataset import NAMES, key_of
 from jointwave.results.labels import AXES, QUANTITIES, RECEIVERS
 from jointwave.results.stress import stress_components
 
@@ -21,7 +21,7 @@ from jointwave.results.stress import stress_components
 #: a receiver.
 COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
     1: {
-        "stress": ("",),
+        "stress": tuple(stress_components(1)),
         "shear": ("x", "z"),
         **dict.fromkeys(("velocity", "displacement", "rotation"), AXES),
     },
@@ -87,9 +87,7 @@ class Place(NamedTuple):
     @property
     def key(self) -> str:
         """The key of [record] that lists its receivers."""
-        if len(self.at) == 1:
-            return "stress" if self.quantity in OF_SECTIONS else "velocity"
-        return "joints" if self.quantity in OF_JOINTS else "points"
+        return key_of(self.quantity, len(self.at))
 
     def is_at(self, other: "Place") -> bool:
         """Return whether it is the same waveform as another place; no component fits any."""

@@ -31,16 +31,14 @@ CURL = np.array([[[0, 0, 0], [0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, 0, 0], [1,
                  [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]])  # fmt: skip
 
 
-def extent_of(scene: Scene, body: Body) -> float:
-    """Return the factor from integrals over a body's mesh to those over the pillar, m2, m or 1."""
-    return float(scene.pillar.side ** (3 - body.x.shape[1]))
-
-
 def readings_of_pillar(scene: Scene, found: SceneBody, stress: np.ndarray | None) -> Readings:
     """Return the readings of a pillar's receivers: motion, then rotation; stress at sections, in
     rock as stress and on joints as traction. stress : at u = 0 [d, d], Pa, compression positive."""
     body, force, axes = found.body, sections(found, scene.record.stress), along_first(found.body)
-    area, constant = scene.pillar.area / extent_of(scene, body), np.zeros(force.elastic.shape[0])
+    area, constant = (
+        scene.pillar.area / scene.left_out(body.x.shape[1]),
+        np.zeros(force.elastic.shape[0]),
+    )
     if stress is not None:
         constant += np.tile(stress[axes[0], axes], len(scene.record.stress))
     if scene.gravity is not None:

@@ -33,9 +33,7 @@ class StressOfCells:
         each = np.repeat(corners, len(parts), axis=0)
         shape = len(corners), len(parts), *2 * (corners.shape[2],)
         self.inverse = np.linalg.inv(evaluation.jacobians(kind, each, at)).reshape(shape)
-        pairs = [(1, 1)]  # along a pillar
-        if not found.scene.is_column:
-            pairs = [*stress_components(body.components).values()]
+        pairs = stress_components(len(found.scene.axes)).values()
         self.moduli, lag = -found.moduli(pairs)[found.of_cell], found.of_cells("time_constant")
         self.lag = lag[:, None, None] if lag.any() else None
         given = found.scene.prestress
@@ -85,4 +83,4 @@ class RockRecorder(SnapshotRecorder):
         node = self.node if body.tied is None else body.tied[self.node]
         moved, moving = (one.reshape(-1, body.components)[node] for one in (u, v))
         stress = self.stress.of(strained, v)
-        return moved, moving, stress[:, 0] if self.scene.is_column else stress, np.zeros(0)
+        return moved, moving, stress[:, 0] if stress.shape[1] == 1 else stress, np.zeros(0)

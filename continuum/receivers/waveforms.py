@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.receivers.sections import extent_of
 from jointwave.continuum.stepping.arrays import Samples
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.results.dataset import TERMS, dataset
@@ -60,8 +59,7 @@ def ledger_of(scene: AnyScene, problem: Problem, samples: Samples) -> dict[str, 
     has["gravity"] = scene.gravity is not None
     if scene.excavated and scene.gravity is None:
         found[TERMS.index("elastic")] += found[TERMS.index("gravity")]
-    if scene.is_column:
-        found *= extent_of(scene, problem.body)
+    found *= scene.left_out(problem.body.x.shape[1])
     rows = [row for row, term in enumerate(TERMS) if has.get(term, True)]
     return {"energy": found[rows], "terms": tuple(TERMS[row] for row in rows)}
 

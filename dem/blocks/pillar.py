@@ -91,7 +91,7 @@ def blocks_of(scene: Scene) -> BlocksOfPillar:
 
 def cut_of(scene: Scene, dim: int) -> Cut:
     """Return the blocks of a pillar, with full volumes and areas in any number of dimensions."""
-    cut, section = blocks_of_pillar(scene, dim), scene.pillar.side ** (3 - dim)
+    cut, section = blocks_of_pillar(scene, dim), scene.left_out(dim)
     contacts, boundary = (
         replace(one, area=section * one.area, second_moment=section * one.second_moment)
         for one in (cut.contacts, cut.boundary)
