@@ -26,11 +26,6 @@ class Effect(NamedTuple):
     reason: str
 
 
-def is_spatial(scene: Scene) -> bool:
-    """Return whether a scene moves across its axis or rotates its blocks; else it is axial."""
-    return off_axis(scene) is not None
-
-
 def effects(scene: AnyScene) -> list[Effect]:
     """Return every known effect for this kind of scene, in the order of cost."""
     own = _of_column(scene) if scene.is_column else _of_joint_sets(scene)
@@ -43,24 +38,10 @@ def active_effects(scene: AnyScene) -> list[str]:
     return [effect.name for effect in effects(scene) if effect.active]
 
 
-def off_axis(scene: Scene) -> str | None:
-    """Return why the scene is not axial; None if it is."""
-    if scene.load.arm is not None:
-        return "the load is a couple"
-    if scene.load.is_across:
-        return "the load has a component across the axis"
-    if scene.load.is_eccentric:
-        return "the load is eccentric"
-    gravity = scene.gravity
-    if gravity is not None and (gravity.direction[0] or gravity.direction[2]):
-        return "gravity has a component across the axis"
-    return None
-
-
 def bends(scene: Scene) -> bool:
     """Return whether a load or gravity bends a pillar whose blocks may rotate."""
     twists = scene.load.arm is not None and not scene.load.is_across and scene.gravity is None
-    return is_spatial(scene) and scene.motion.rotation != "none" and not twists
+    return scene.is_spatial and scene.motion.rotation != "none" and not twists
 
 
 def _of_column(scene: Scene) -> Iterator[Called]:
@@ -68,7 +49,7 @@ def _of_column(scene: Scene) -> Iterator[Called]:
     source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"
     damped = p.joint_time_constant is not None
     yield "dashpots", damped and f"{source} is given", "no damping_ratio"
-    parts, differ, cause = len(p.each), len(p.soft), off_axis(scene)
+    parts, differ, cause = len(p.each), len(p.soft), scene.off_axis
     yield "segments", parts > 1 and f"{parts} segments", "no [[segments]]"
     yield "scatter", random and f"seed {random.seed}", "no [scatter]"
     open_up = int((~p.tension).sum())
@@ -77,9 +58,8 @@ def _of_column(scene: Scene) -> Iterator[Called]:
     alike = "all joints are equal: scalars, no arrays" if p.is_uniform else "no soft layers"
     layers = differ and f"{differ} soft layer{'s' * (differ > 1)}"
     yield "joints that differ", layers, alike
-    freedoms = 3 if scene.rotation == "none" else 6
     axial = "the load is axial and central: one degree of freedom per block"
-    yield "spatial motion", cause and f"{cause}: {freedoms} degrees of freedom", axial
+    yield "spatial motion", cause and f"{cause}: {scene.block_freedoms} degrees of freedom", axial
     turns = f"motion.rotation = '{scene.rotation}'" if cause else "the blocks do not rotate"
     yield "finite rotation", cause and scene.rotation == "finite" and turns, turns
     slips = p.friction is not None or p.cohesion is not None

@@ -63,7 +63,7 @@ def value_of(scene: Any, key: str) -> object:
 def waveform_bytes(scene: AnyScene, spatial: bool = False) -> float:
     """Return the memory of waveforms and energy ledger, written copies included, bytes; spatial :
     whether a pillar moves across its axis. Raises SceneError if one does not fit into a file."""
-    of_place = AXIAL if scene.axes == "y" and not spatial else COMPONENTS[scene.axes]
+    of_place = COMPONENTS[scene.axes] if spatial or scene.is_spatial else AXIAL
     rows = {f"record.{k}": (len(getattr(scene.record, k)), *each) for k, each in of_place.items()}
     samples = scene.time.duration / scene.interval + 1
     key, (places, most, _) = max(rows.items(), key=lambda row: row[1][0] * row[1][1])

@@ -9,7 +9,6 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
@@ -102,7 +101,7 @@ def of_stiff_elements(found: SceneBody) -> Iterator[str]:
     """Warn of linear elements that are too stiff in scenes where blocks rotate or pillars bend."""
     scene, body = found.scene, found.body
     if scene.is_column:
-        turns = is_spatial(scene) and scene.motion.rotation != "none" and not scene.mesh_path
+        turns = scene.is_spatial and scene.motion.rotation != "none" and not scene.mesh_path
     else:
         turns = len(scene.joint_sets) > 1 or not scene.boundaries.sides("periodic")
     if scene.numerics.continuum.order > 1 or body.x.shape[1] == 1 or not turns:

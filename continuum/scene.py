@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import Complex, GeometryError
@@ -153,7 +152,7 @@ def _simplices(
 def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
     """Return the elements of a pillar in `dim` dimensions; a joint's column is its number."""
     p, numerics = calibrate(scene), scene.numerics.continuum
-    size = 3 if dim == 1 and is_spatial(scene) else dim
+    size = 3 if dim == 1 and scene.is_spatial else dim
     layers = layers_of(scene) if numerics.mesh is None else {}
     joints = resolved_joints(scene, model, size > 1, numerics.mesh is None)
     halves = np.append(joints.share, 0.0) + np.append(0.0, joints.share)

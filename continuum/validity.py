@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import Properties, calibrate
 from jointwave.cases.scene_type import AnyScene
@@ -63,7 +62,7 @@ def dimension_of(scene: Scene, dim: int | None = None) -> int:
     """
     if given := dim or scene.numerics.continuum.dim:
         return given
-    spatial = is_spatial(scene)
+    spatial = scene.is_spatial
     if scene.numerics.continuum.mesh is not None:
         return 2 if spatial and not _leaves_plane(scene) else 3
     if not spatial or scene.motion.rotation == "none":
@@ -81,7 +80,7 @@ def _leaves_plane(scene: Scene) -> bool:
 
 
 def _of_pillar(scene: Scene, model: str, dim: int | None) -> Reasons:
-    p, mesh, spatial = calibrate(scene), dimension_of(scene, dim), is_spatial(scene)
+    p, mesh, spatial = calibrate(scene), dimension_of(scene, dim), scene.is_spatial
     rotation, damped = scene.motion.rotation, scene.rock.quality_factor is not None
     bar = "a bar does not bend or twist: needs dim 2 or 3, or motion.rotation = 'none'"
     plane = "the motion leaves the plane of x and y: needs dim 3"

@@ -2,7 +2,6 @@
 `tests/theory/shipped_scenes.py`."""
 
 from jointwave import cases
-from jointwave.cases.effects import is_spatial
 from jointwave.compare.engines import applies, names
 from jointwave.compare.scenes import shipped_files
 
@@ -12,7 +11,7 @@ def test_no_solution_of_axial_motion_claims_a_spatial_scene():
     spatial = {"dem", "spatial-lattice", "slip-joint", "sliding-block"}
     spatial |= {"continuum-jointed", "continuum-equivalent"}
     every = [s for path in shipped_files() for s in cases.load(path)]
-    scenes = [s for s in every if s.is_column and is_spatial(s)]
+    scenes = [s for s in every if s.is_column and s.is_spatial]
     assert scenes
     for scene in scenes:
         answers = {name: applies(name, scene) for name in names()}

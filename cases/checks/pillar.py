@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from jointwave.cases.checks.rules import Wrong, of_damping, of_fracture, of_strength, within
-from jointwave.cases.effects import active_effects, off_axis
+from jointwave.cases.effects import active_effects
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.jointed_rock import equivalent_constants
 from jointwave.cases.partition.pillar import block_ends, welds
@@ -225,7 +225,7 @@ def _of_segments(scene: Scene) -> Iterator[Wrong]:
             allowed = f"must exceed the equivalent modulus {given[0]:.4g}, or give joints = false"
             yield key, rock.intact_modulus, allowed
     mesh, scheme = scene.numerics.continuum.mesh, scene.numerics.dem.scheme
-    if why := off_axis(scene):
+    if why := scene.off_axis:
         table, count = "segments" if scene.segments else "scatter", len(scene.segments)
         yield table, count or "given", f"supports axial motion only, as pillar.joints does: {why}"
     if scene.gravity is not None and scene.gravity.acceleration:

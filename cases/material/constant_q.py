@@ -16,12 +16,11 @@ larger by Re(sqrt(M_u / M))^2.
 
 from functools import lru_cache
 from math import ceil, log10, pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointwave.cases.material.calibrate import calibrate
-from jointwave.cases.scene_type import AnyScene
 
 SPACING = 0.85  # most decades between relaxation frequencies: Q is within 4 % from Q = 5 on
 BEYOND = 0.1  # decades of relaxation frequencies outside the band at each end
@@ -47,7 +46,7 @@ class Mechanisms(NamedTuple):
         return self.unrelaxed * (1 - parts.sum(axis=-1))
 
 
-def mechanisms_of(scene: AnyScene, model: str) -> Mechanisms | None:
+def mechanisms_of(scene: Any, model: str) -> Mechanisms | None:
     """Return the mechanisms of a scene's intact rock, or of a pillar's rock mass for the model
     "equivalent"; None without a quality factor."""
     rock = scene.rock

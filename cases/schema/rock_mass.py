@@ -211,6 +211,8 @@ class RockMass(SceneBase):
     source_tables: ClassVar[tuple[str, ...]] = ("waves", "loads")
     side_table: ClassVar[str] = "boundaries"
     rotation: ClassVar[str] = "small"
+    soft_layers: ClassVar[tuple[()]] = ()
+    off_axis: ClassVar[str] = "a rock mass has no axis"
 
     @property
     def axes(self) -> str:

@@ -25,6 +25,7 @@ class SceneBase(Table):
     is_column : whether it is a row of blocks along y with free sides and an axial stress in each
         section, not a body in two or three dimensions.
     axes : of the coordinates of receivers.
+    off_axis : why the motion is not axial; None if it is.
     law_tables, source_tables : tables of joint laws, and of loads and waves. side_table : table of
         boundary conditions.
     """
@@ -56,6 +57,18 @@ class SceneBase(Table):
     def in_space(self: Any) -> bool:
         """Whether receivers are in space."""
         return len(self.axes) == 3
+
+    @property
+    def is_spatial(self: Any) -> bool:
+        """Whether it moves across an axis or rotates its blocks; else it is axial."""
+        return self.off_axis is not None
+
+    @property
+    def block_freedoms(self: Any) -> int:
+        """Degrees of freedom of a rigid block."""
+        if not self.is_spatial:
+            return 1
+        return 3 if self.in_plane or self.rotation == "none" else 6
 
     @property
     def laws(self) -> dict[str, JointLaw]:
@@ -145,6 +158,19 @@ class Scene(SceneBase):
     def rotation(self) -> str:
         """Block rotations that are computed: "none", "small" or "finite"."""
         return self.motion.rotation
+
+    @property
+    def off_axis(self) -> str | None:
+        """Why the motion is not axial; None if it is."""
+        if self.load.arm is not None:
+            return "the load is a couple"
+        if self.load.is_across:
+            return "the load has a component across the axis"
+        if self.load.is_eccentric:
+            return "the load is eccentric"
+        if self.gravity is not None and (self.gravity.direction[0] or self.gravity.direction[2]):
+            return "gravity has a component across the axis"
+        return None
 
     @property
     def mesh_path(self) -> Path | None:

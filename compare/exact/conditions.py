@@ -1,7 +1,7 @@
 """Conditions under which an exact solution covers a scene."""
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.law_parts import PARTS
 from jointwave.cases.schema.scene import Scene
 from jointwave.compare.solvers.record import Answer
@@ -18,7 +18,7 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
     """
     p, laws = calibrate(scene), (scene.joints, *scene.layers)
     physics = {part.name: (any(map(part.of, laws)), part.words) for part in PARTS} | {
-        "spatial motion": (is_spatial(scene), "the motion is spatial"),
+        "spatial motion": (scene.is_spatial, "the motion is spatial"),
         "reversed load": (scene.load.direction[1] < 0, "the load acts against the axis"),
         "segments": (len(p.each) > 1, "the pillar has segments"),
         "scatter": (scene.scatter is not None, "the joints are random"),
@@ -45,6 +45,6 @@ def holds(scene: Scene, held: tuple[str, ...], *against: tuple[bool, str]) -> An
     return Answer.unless(*beyond, *against)
 
 
-def has_thick_layer(scene: Scene) -> bool:
+def has_thick_layer(scene: AnyScene) -> bool:
     """Return whether a soft layer is rock with a thickness, not a joint."""
     return any(layer.thickness is not None for layer in scene.soft_layers)

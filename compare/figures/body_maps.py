@@ -8,7 +8,6 @@ import numpy as np
 import shapely
 import xarray as xr
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
@@ -104,7 +103,7 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
     body = body_of(s, view._replace(scale=1.0, stretch=1.0, quantity=quantity)).front()
     corners, joints, values = body.rest[body.faces][..., [0, 2]], _joints(scene), body.values
     if quantity == snapshots.SLIP:
-        if not len(joints) or (scene.is_column and not is_spatial(scene)):
+        if not len(joints) or not scene.is_spatial:
             why = "is of joints along which something moves; this body has none"
             raise SceneError(scene.title, "map", "slip", why)
         if "field_slip" in result:

@@ -8,7 +8,7 @@ independently. Only solutions of the same model differ by a numerical error.
 """
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
@@ -28,22 +28,19 @@ class Reference(NamedTuple):
 NOT_CHECKED = "not checked independently"
 
 
-def lacks(name: str, scene: AnyScene) -> str:
+def lacks(name: str, scene: Any) -> str:
     """Return the effect of a scene that an applicable solution leaves out, "" if none.
 
     Rigid blocks model a soft layer's thickness as a joint; bars have no lateral inertia.
     """
-    of = solver(name)
-    if not scene.is_column:
+    of, mesh = solver(name), scene.numerics.continuum
+    if of.rock is Rock.RIGID_BLOCKS:
+        return "the thickness of a soft layer" if has_thick_layer(scene) else ""
+    is_bar = of.dimension == 1 and of.rock in (Rock.JOINTED, Rock.HOMOGENISED)
+    if not is_bar or scene.rotation == "none" or (mesh.dim in (None, 1) and mesh.mesh is None):
         return ""
-    if has_thick_layer(scene) and of.rock is Rock.RIGID_BLOCKS:
-        return "the thickness of a soft layer"
-    mesh = scene.numerics.continuum
-    widens = scene.motion.rotation != "none" and ((mesh.dim or 1) > 1 or mesh.mesh is not None)
-    if widens and of.dimension == 1 and of.rock in (Rock.JOINTED, Rock.HOMOGENISED):
-        poisson = scene.rock.intact_poisson if of.rock is Rock.JOINTED else calibrate(scene).poisson
-        return "lateral inertia" if poisson else ""
-    return ""
+    poisson = scene.rock.intact_poisson if of.rock is Rock.JOINTED else calibrate(scene).poisson
+    return "lateral inertia" if poisson else ""
 
 
 def finest(names: Iterable[str], scene: AnyScene) -> Reference | None:

@@ -22,7 +22,6 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.effects import off_axis
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
@@ -98,7 +97,7 @@ def dispersion_theory(
     for key, there, allowed in (
         ("segments", pillar.segments, "give each rock in its own scene"),
         ("scatter", pillar.scatter, "random joints have no theory of dispersion"),
-        ("load", across := off_axis(pillar), f"the theory is of waves along the axis: {across}"),
+        ("load", across := pillar.off_axis, f"the theory is of waves along the axis: {across}"),
         ("joints.maximum_closure", pillar.joints.maximum_closure, "the speed depends on stress"),
         ("damping.local", pillar.damping.local, "is not linear"),
     ):

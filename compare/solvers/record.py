@@ -14,10 +14,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-OF_BLOCK_IN_PLANE = 3  # degrees of freedom of a rigid block of a rock mass ...
-OF_BLOCK_IN_SPACE = 6  # ... and in space
-
-
 class Rock(IntEnum):
     """The rock mass as a solver resolves it, from the coarsest to the finest."""
 
@@ -193,8 +189,4 @@ class Solver:
 
     def units(self, scene: AnyScene, freedoms: int) -> int:
         """Return the number of these units in a run."""
-        if not self.per_block:
-            return freedoms
-        if scene.is_column:
-            return scene.block_count
-        return freedoms // (OF_BLOCK_IN_SPACE if scene.in_space else OF_BLOCK_IN_PLANE)
+        return freedoms // scene.block_freedoms if self.per_block else freedoms

@@ -124,8 +124,8 @@ def _start(
     """Return the keys, the scene with their starting values, and the name of the solver; raises
     SceneError if the solver does not apply."""
     keys = free_keys(list(free), scene)
-    first = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
-    short = first.is_column and first.block_count <= SHORT and row_of_blocks.applies(first)
+    first: Any = changed(scene, {k.key: k.start for k in keys if k.key != CLOCK})
+    short = applies(row_of_blocks.AXIAL.name, first) and first.block_count <= SHORT
     name = solver or (row_of_blocks.AXIAL.name if short else DEM.name)
     if not (answer := applies(name, first)):
         raise SceneError(first.where, "", None, f"{name} does not apply: {answer.reason}")

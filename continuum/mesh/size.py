@@ -5,7 +5,6 @@ from math import ceil, sqrt
 
 import numpy as np
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import placed
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
@@ -97,7 +96,7 @@ def of_coarse_cells(
     size, axis = np.ptp(corners, axis=1), corners.shape[2] // 2
     if scene.is_column:
         size = size[:, [axis]]
-    if scene.is_column and not is_spatial(scene):
+    if not scene.is_spatial:
         least = moduli[:, axis, axis]
     else:  # the shear modulus of isotropic rock, the modulus under pressure of a fluid
         values = np.linalg.eigvalsh(moduli)

@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.geometry.blocks import Blocks as Cut
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.material.calibrate import Properties, calibrate
@@ -58,7 +57,7 @@ class BlocksOfPillar(RigidBlocks):
 
 def blocks_of(scene: Scene) -> BlocksOfPillar:
     """Return the rigid blocks of a pillar; raises SceneError if they do not fit in memory."""
-    dim = 3 if is_spatial(scene) else 1
+    dim = 3 if scene.is_spatial else 1
     refuse_beyond_memory(scene, {"pillar.block": CUT[dim] * scene.block_count})
     p, cut = calibrate(scene), cut_of(scene, dim)
     rotations = ROTATIONS[dim] if scene.motion.rotation != "none" else 0

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jointwave.cases.effects import active_effects, effects, is_spatial
+from jointwave.cases.effects import active_effects, effects
 
 ACROSS = {"load.direction": [1.0, 0.0, 0.0]}
 DOWN = {"direction": [0, -1, 0], "static": False}
@@ -71,12 +71,12 @@ SPATIAL = {
 def test_what_takes_a_pillar_off_its_axis(pillar, reason):
     scene = pillar(**SPATIAL[reason])
     reasons = {one.name: one.reason for one in effects(scene)}
-    assert is_spatial(scene)
+    assert scene.is_spatial
     assert reasons["spatial motion"] == f"{reason}: 6 degrees of freedom"
 
 
 def test_axial_gravity_and_a_load_against_the_axis_stay_axial(pillar):
-    assert not is_spatial(pillar(gravity=DOWN, **{"load.direction": [0, -1, 0]}))
+    assert not pillar(gravity=DOWN, **{"load.direction": [0, -1, 0]}).is_spatial
 
 
 def test_reasons_of_blocks_that_do_not_turn_and_of_one_joint(pillar):

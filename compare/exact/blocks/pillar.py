@@ -9,7 +9,6 @@ rock to a wall (fixed).
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.contact_points import bending
@@ -38,9 +37,7 @@ def system_of(scene: Scene) -> system.BlockSystem:
 
 def own_freedoms(scene: Scene) -> list[int]:
     """Return which of (u_x, u_y, u_z, theta_x, theta_y, theta_z) the blocks of a scene have."""
-    if not is_spatial(scene):
-        return [1]
-    return list(range(3 if scene.motion.rotation == "none" else 6))
+    return list(range(scene.block_freedoms)) if scene.is_spatial else [1]
 
 
 def bodies(scene: Scene, held: bool = False) -> tuple[np.ndarray, system.Contacts]:

@@ -22,7 +22,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.histories import Step
 from jointwave.cases.loads import late_load, with_walls
 from jointwave.cases.material.calibrate import calibrate
@@ -69,7 +68,7 @@ def applies_without_tension(scene: Scene) -> Answer:
 def applies_in_space(scene: Scene) -> Answer:
     """Return whether the scene's row of blocks is spatial, linear and not too long."""
     p = calibrate(scene)
-    if not is_spatial(scene):
+    if not scene.is_spatial:
         return Answer("the motion is axial: see lattice")
     return holds(
         scene,
@@ -89,7 +88,7 @@ def solve(scene: Scene) -> xr.Dataset:
     and rotation: responses to drive and sudden gravity, plus the initial state."""
     one, times = system_of(scene), sample_times(scene)
     about: dict[str, Any] = {}
-    name, known = (IN_SPACE if is_spatial(scene) else AXIAL).name, len(times)
+    name, known = (IN_SPACE if scene.is_spatial else AXIAL).name, len(times)
     if len(one.one_sided):
         of = one, late_load(scene), times, scene.load.time_scale
         motions = [integrate(*of, noise) for noise in (0.0, NOISE)]

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from jointwave.cases.effects import is_spatial
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
@@ -163,7 +162,7 @@ def settings_for(
     squares, axes = np.linalg.eigh(across.T @ across)
     x, z = axes[:, 1] if squares[1] > DEGENERATE * squares[0] else (1.0, 0.0)  # else x
     up, plane = np.array([x, 0.0, z]) * np.sign(x + z or 1.0), calibrate(scene).impedance
-    silent = is_spatial(scene) and any(  # the wave is transverse
+    silent = scene.is_spatial and any(  # the wave is transverse
         s.stress is None or np.abs(s.stress).max() < SILENT * plane * np.abs(s.velocity).max()
         for s in found.values()
     )

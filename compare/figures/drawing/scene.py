@@ -53,7 +53,7 @@ def scene_figure(name: str, comparisons: list[Comparison], explode: float = 0.0)
     return SceneFigure(f"{name}-scene", TITLE, CAPTION, _figure(few), numbers)
 
 
-def sketch_of(scene: AnyScene, explode: float = 0.0) -> Sketch:
+def sketch_of(scene: Any, explode: float = 0.0) -> Sketch:
     """Return the sketch of a pillar or a rock mass."""
     return space.sketch_of(scene, explode) if scene.in_space else plane.sketch_of(scene)
 
