@@ -6,6 +6,7 @@ such sets they are rho a along the normal and rho b across it.
 """
 
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ Rocks = tuple[list[tuple[np.ndarray, float]], np.ndarray]
 
 
 def impedances(
-    scene: AnyScene,
+    scene: Any,
     normals: np.ndarray,
     places: np.ndarray,
     region: np.ndarray,
@@ -35,9 +36,9 @@ def impedances(
     tensors [m, d, d], Pa s/m, that map the velocity of a wave along the normal to its traction.
     other : rocks instead of the scene's rock between joints. more : pressure, Pa, that closes
     joints in addition to the initial stress."""
-    if scene.is_column:
-        ends = [(one.impedance, one.shear_impedance) for _, one in _ends(scene, normals)]
-        return along_and_across(normals, np.array(ends).reshape(-1, 2))
+    if (ends := _ends(scene, normals)) is not None:
+        both = [(one.impedance, one.shear_impedance) for _, one, _ in ends]
+        return along_and_across(normals, np.array(both).reshape(-1, 2))
     dim, scenes = normals.shape[1], within(scene, scene.joint_sets)
     if other is None:
         own = [(stiffness(elastic_rock(one.rock), [], dim), one.rock.density) for one in scenes]
@@ -63,33 +64,35 @@ def borne(scene: AnyScene, normals: np.ndarray) -> np.ndarray:
     Sides below the rock bear both, sides beside it the normal part, as rock continues there; sides
     above it none. The ends of a pillar bear both or none.
     """
-    gravity = scene.gravity
+    whole, gravity = np.tile(np.eye(normals.shape[1]), (len(normals), 1, 1)), scene.gravity
+    if (ends := _ends(scene, normals)) is not None:
+        return whole * np.reshape([bears for *_, bears in ends], (-1, 1, 1))
     if gravity is None or not gravity.acceleration:
-        return np.zeros((*normals.shape, normals.shape[1]))
+        return 0 * whole
     pull = np.array(gravity.direction, dtype=float)
-    lean = normals @ (pull[1:2] if normals.shape[1] == 1 else pull[: normals.shape[1]])
-    least = -LEAN, -LEAN if scene.is_column else LEAN
-    return along_and_across(normals, (lean[:, None] > least).astype(float))
+    return along_and_across(normals, ((normals @ pull)[:, None] > (-LEAN, LEAN)).astype(float))
 
 
 def half_joints(scene: AnyScene, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the half joints in front of matched sides with outward normals [m, d]: normal and
     shear stiffness [m, 2], Pa/m, 0 for other sides, and time constants [m], s."""
     stiffness, eta = np.zeros((len(normals), 2)), np.zeros(len(normals))
-    for k, (kind, rock) in enumerate(_ends(scene, normals)):
+    for k, (kind, rock, _) in enumerate(_ends(scene, normals) or ()):
         if kind == "matched" and isfinite(rock.regular_own_stiffness):
             stiffness[k] = 2 * rock.regular_own_stiffness, 2 * rock.regular_own_shear_stiffness
             eta[k] = rock.time_constant or 0.0
     return stiffness, eta
 
 
-def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock]]:
-    """Return condition and rock of a pillar's ends with outward normals [m, d]; none for others."""
+def _ends(scene: AnyScene, normals: np.ndarray) -> list[tuple[str, JointedRock, bool]] | None:
+    """Return condition and rock of a pillar's ends with outward normals [m, d], and whether they
+    bear its weight; None for a rock mass."""
     if not scene.is_column:
-        return []
+        return None
     p, along = calibrate(scene), normals[:, min(1, normals.shape[1] - 1)]
-    start, end = (scene.ends.start, p.at_start.at_rest), (scene.ends.end, p.at_end.at_rest)
-    return [start if one < 0 else end for one in along]
+    kinds, rocks = (scene.ends.start, scene.ends.end), (p.at_start.at_rest, p.at_end.at_rest)
+    both = list(zip(kinds, rocks, scene.bears, strict=True))
+    return [both[int(one > 0)] for one in along]
 
 
 def base_traction(impedance: np.ndarray, direction: list[float]) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Forces on a body: gravity, pressures, point forces, compliant bases, excavations, waves."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import ufl
@@ -65,15 +65,14 @@ def released(scene: AnyScene, body: Body) -> np.ndarray | None:
     return forces_on(body, walls, walls.normal @ scene.prestress.tensor)
 
 
-def pushes(scene: AnyScene, body: Body, model: str) -> list[Push]:
+def pushes(scene: Any, body: Body, model: str) -> list[Push]:
     """Return the loads of a scene that are forces; model : "jointed" or "equivalent"."""
-    if scene.is_column:
-        return [Push(end_force(scene, body, one), late_load(scene, model)) for one in scene.pushes]
-    of_kind = {"pressure": _pressure, "force": _force, "base": _base}
-    return [
-        Push(of_kind[one.kind](scene, body, one), velocity_of(one, one.amplitude))
-        for one in scene.pushes
-    ]
+    of_kind: Any = {"pressure": _pressure, "force": _force, "base": _base, "end": end_force}
+
+    def history(load: Any) -> LoadHistory:
+        return late_load(scene, model) if load.kind == "end" else velocity_of(load, load.amplitude)
+
+    return [Push(of_kind[one.kind](scene, body, one), history(one)) for one in scene.pushes]
 
 
 def _base(scene: RockMass, body: Body, load: PlaneLoad) -> np.ndarray:

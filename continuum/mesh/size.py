@@ -85,7 +85,7 @@ def of_coarse_cells(
     scene: AnyScene, scripted: bool, corners: np.ndarray, moduli: np.ndarray, density: np.ndarray
 ) -> Iterator[str]:
     """Warn of cells, of a file or with a script's rock, too large for the shortest wave: S waves at
-    the highest frequency, or axial waves in an axial pillar.
+    the highest frequency, or axial waves in an axial pillar, along the axes of its receivers.
 
     corners : of cells [cells, n, d], m. moduli : stiffness of their rock in Voigt's form
     [cells, n, n], Pa. density : [cells], kg/m3.
@@ -93,9 +93,8 @@ def of_coarse_cells(
     frequency = highest_frequency(scene)
     if frequency is None:
         return
-    size, axis = np.ptp(corners, axis=1), corners.shape[2] // 2
-    if scene.is_column:
-        size = size[:, [axis]]
+    axis, travels = corners.shape[2] // 2, ["xyz".index(one) for one in scene.axes]
+    size = np.ptp(corners, axis=1)[:, np.minimum(travels, corners.shape[2] - 1)]
     if not scene.is_spatial:
         least = moduli[:, axis, axis]
     else:  # the shear modulus of isotropic rock, the modulus under pressure of a fluid

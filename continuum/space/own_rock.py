@@ -133,10 +133,8 @@ def _refuse_own_rock(scene: AnyScene, forms: Forms, own: list[Material]) -> None
     """Raise SceneError for features that need the scene's [rock], which a script has replaced."""
     if forms.damping is None and any(one.time_constant for one in own):
         _refuse(scene, "the scene's dashpots of rock need Forms.damping", "damping")
-    if scene.is_column:
-        if {scene.ends.start, scene.ends.end} & {"quiet", "matched"}:
-            _refuse(scene, "absorbing ends have the impedance of the scene's rock", "ends")
-        return
+    if scene.is_column and scene.ends.sides("quiet", "matched"):
+        _refuse(scene, "absorbing ends have the impedance of the scene's rock", "ends")
     if scene.waves:
         _refuse(scene, "waves enter from the scene's rock: take a load on a side", "waves")
     if any(one.kind == "base" for one in scene.pushes):
