@@ -8,6 +8,7 @@ With the outward normal n, a side crossed by the field (v, sigma) has the tracti
 v_rock is the dashpot of the side; the rest, `tractions`, is known before the run.
 """
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -21,6 +22,9 @@ from jointwave.cases.material.rock import ElasticRock, elastic_rock
 from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.schema.pulse import Wave
 from jointwave.cases.schema.rock_mass import RockMass
+
+log = logging.getLogger("jointwave")
+TAKE = "jointwave.simulate takes the field that belongs to the scene"
 
 #: Index of sigma_ij among the components xx; xx, yy, xy; xx, yy, zz, xy, yz, xz.
 COMPONENT = {
@@ -106,11 +110,12 @@ class FreeField(PlaneWaves):
 
 
 def free_field(scene: RockMass) -> FreeField:
-    """Return the field of all waves of a scene in rock without joints. Raises SceneError if waves
-    cross several regions of rock, where they do not stay plane."""
+    """Return the field of all waves of a scene in rock without joints, with a warning where it has
+    some. Raises SceneError if waves cross several regions of rock, where they do not stay plane."""
     if scene.waves and scene.regions:
-        allowed = "cross several rocks: give their field (compare.exact.rock_mass.field.field_of)"
-        raise SceneError(scene.where, "waves", len(scene.waves), allowed)
+        raise SceneError(scene.where, "waves", len(scene.waves), f"cross several rocks: {TAKE}")
+    if scene.waves and scene.joint_sets:
+        log.warning(f"{scene.where}: waves: enter all sides as in rock without joints: {TAKE}")
     return FreeField(tuple(plane_wave(scene, one) for one in scene.waves))
 
 

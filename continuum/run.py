@@ -52,7 +52,8 @@ def simulate(
         scene.
     progress : called with the finished fraction.
     keeper : saves checkpoints, `numerics.time_loop.Checkpointer`.
-    incident : field of the waves in unbounded rock; absent: that in unjointed rock.
+    incident : field of the waves in unbounded rock; absent: that in unjointed rock, with a warning
+        where the scene has joints; `jointwave.simulate` takes the one that belongs to the scene.
     comm : mpi4py communicator of the processes that share the run; the call is collective, and all
         processes get the whole result. keeper, progress : of each process.
 

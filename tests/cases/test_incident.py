@@ -13,12 +13,13 @@ S_WAVE = WAVE | {"kind": "S"}
 def scene(rock_with):
     """A function of a wave: rock of 2000 kg/m3 with lambda = mu = 20 GPa, 4 m by 3 m, quiet."""
 
-    def make(wave):
+    def make(wave, **tables):
         return rock_with(
             domain={"size": [4.0, 3.0]},
             rock={"density": 2000.0, "intact_modulus": 5e10, "intact_poisson": 0.25},
             waves=[wave],
             boundaries=dict.fromkeys(("left", "right", "bottom", "top"), "quiet"),
+            **tables,
         )
 
     return make
@@ -34,6 +35,15 @@ def test_p_waves_move_along_their_travel_and_s_waves_to_its_left(scene, wave, sp
     assert not v[0, :, 0].any()
     assert v[0, :, 1] == pytest.approx(1e6 / (2000 * speed) * np.array(moves), rel=1e-12)
     assert s[0, :, 1] == pytest.approx(1e6 * np.array(stress), rel=1e-12)
+
+
+def test_waves_in_rock_without_its_joints_warn(scene, caplog):
+    joint = {"name": "a", "dip": 0.0, "through": [0.0, 1.0]}
+    joint |= {"normal_stiffness": 2e10, "shear_stiffness": 1e10}
+    free_field(scene(WAVE))
+    assert not caplog.records
+    free_field(scene(WAVE, joint_sets=[joint]))
+    assert "as in rock without joints: jointwave.simulate takes the field" in caplog.text
 
 
 def test_a_face_that_a_wave_enters_feels_twice_its_stress(scene):
