@@ -93,7 +93,8 @@ class _Tables:
         names = [variant.get("name") for variant in self.variants]
         if name and name not in names:
             known = sorted(map(str, names))
-            allowed = f"must be one of {known}{nearest(name, known)}" if names else NO_VARIANTS
+            some = f"must be '' (the base scene) or one of {', '.join(known)}{nearest(name, known)}"
+            allowed = some if names else NO_VARIANTS
             raise SceneError(str(self.path), "variants.name", name, allowed)
         return self.scene(names.index(name) if name else -1)
 

@@ -10,11 +10,13 @@ independently. Only solutions of the same model differ by a numerical error.
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, applies, names, solver
 from jointwave.compare.exact.conditions import has_thick_layer
 from jointwave.compare.scenes import AnySource, bound_of, load
+from jointwave.compare.solvers.incident import incident
 from jointwave.compare.solvers.record import Answer, Kind, Rock
 
 
@@ -112,7 +114,13 @@ def _fineness(name: str, scene: AnyScene) -> tuple[bool, int, int]:
 def solvers(scene: AnySource) -> dict[str, str]:
     """Return all engines and exact solutions for a scene's kind by name, with the reason why one
     does not apply, or ""."""
-    return {name: answer.reason for name, answer in applicable(load(scene)).items()}
+    scene = load(scene)
+    found = {name: answer.reason for name, answer in applicable(scene).items()}
+    try:
+        incident(scene)
+    except SceneError as error:  # engines need the field of the waves
+        found |= {name: found[name] or f"{error.key} {error.allowed}" for name in ENGINES}
+    return found
 
 
 def applicable(scene: AnyScene) -> dict[str, Answer]:

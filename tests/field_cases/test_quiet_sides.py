@@ -294,6 +294,7 @@ def test_explain_says_that_waves_in_unlike_layers_cannot_run(jointwave, tmp_path
         incident(scene(regions=beds))
     (file := tmp_path / "beds.toml").write_text(in_toml(rock([{}], regions=beds)))
     assert "field is not known" in jointwave("explain", file, code=2).err
+    assert "field is not known" in jw.solvers(file)["continuum-jointed"]
 
 
 @pytest.mark.slow

@@ -42,6 +42,7 @@ BAD = [
     (("figure", SCENE, "--out", "a.pdf", "--font-size", "40"), "--width: 90: must be at least 200"),
     (("picture", SCENE, "--map", "ppv"), f"--map: is of results: `jointwave run {SCENE} --set"),
     (("picture", SCENE, "--out", "a.gif"), "--out: a.gif: must end in .pdf or .svg or .png"),
+    (("explain", "xyz", "--json"), "xyz: is neither a file nor a shipped scene"),
     (("picture", "xyz"), "xyz: is neither a file nor a shipped scene"),
     (("picture", "."), ".: has no result of an engine, such as dem.nc"),
     (("picture", "rock-mass/tunnel", "--explode", "0.2"), f"{OF_SPACE} rock-mass/tunnel\n"),

@@ -172,3 +172,9 @@ def test_messages_of_numba_are_not_coloured(tmp_path):
     done = piped(python(MESSAGE), PYTHONPATH=path)
     assert done.returncode == 0, done.stderr
     assert "colours" not in done.stdout and done.stdout.endswith("a message\n")
+
+
+def test_pictures_are_drawn_whatever_backend_a_shell_names(tmp_path):
+    picture = [sys.executable, "-m", "jointwave", "picture", SCENE, "--out", tmp_path / "a.png"]
+    done = piped([*picture, "--variant", ""], MPLBACKEND="none")
+    assert (done.returncode, done.stderr) == (0, "") and (tmp_path / "a.png").exists()
