@@ -22,7 +22,7 @@ from jointwave.results.snapshots import Snapshots
 
 SIZE, PIXELS = (12.8, 7.2), (1280, 720)  # inches
 BODIES = 2.8  # largest total height of pillars, inches
-LETTERS = 85  # per line of the title
+LETTERS = 75  # per line of the title, left of the clock
 TOWARDS = 0.05, -1.0, 0.35  # direction to the viewer of a window, in the axes of a body
 HEAD, STRIP = 0.7, 0.95  # heights of the header and of a pillar, inches
 
@@ -58,9 +58,10 @@ class Frame:
             else:
                 axes = self.figure.subplots(1, len(found), sharey=True, squeeze=False)[0]
                 self._add_bodies(axes, bodies.ABOVE if scene.in_space else bodies.FRONT)
-                up = "z (m)" if scene.in_space else "y (m)"
+                up, of = ("z", " at y = 0") if scene.in_space else ("y", "")
                 for ax in axes:
-                    ax.set(anchor="N", xlabel="x (m)", ylabel=up * (ax is axes[0]))
+                    ylabel = f"{up} (m){of}" * (ax is axes[0])
+                    ax.set(anchor="N", xlabel=f"x (m){of}", ylabel=ylabel)
             label = settings.quantity.label
             label += f"; {100 * beyond:.2g} % is beyond" if beyond else ""
             look: dict[str, Any] = {"aspect": 50, "panchor": False, "label": label}
@@ -114,7 +115,8 @@ class Frame:
         for ax, (name, body) in zip(axes, self.bodies.items(), strict=True):
             self.views[name] = bodies.BodyView(ax, body, self.colours, per_away)
             ax.set_title(label_of(name), color=style(name).colour, fontweight="bold")
-        self.clock = axes[-1].set_title("", loc="right", fontsize=14)
+        corner: dict[str, Any] = {"transform": self.figure.transFigure, "in_layout": False}
+        self.clock = axes[-1].text(0.99, 0.99, "", ha="right", va="top", fontsize=14, **corner)
 
     def _add_pillars(self) -> None:
         """Draw the pillars one below the other, then the colours' quantity along them, and the

@@ -58,6 +58,7 @@ def test_a_title_of_any_length_is_whole(simulated, collisions, title):
     reasons = {"continuum-jointed": "it costs $1 or $2 " * 10}
     frame = Frame(taken._replace(scene=scene, found={"dem": taken.found["dem"]}, reasons=reasons))
     frame.show(40)
+    frame.clock.set_animated(False)
     assert collisions(frame.figure) == [] and list(frame.views) == ["dem"]
     said = words(frame).replace("\n", "").replace(" ", "")
     assert title.replace(" ", "") in said and "itcosts$1or$2" in said
@@ -130,6 +131,14 @@ def squares(one_joint):
     reasons = {"continuum-jointed": "it has not been asked"}
     scene = one_joint(domain={"size": [2.0, 1.0]}, joint_sets=[], record={"points": [[0.5, 0.5]]})
     return SceneSnapshots(load_tables(scene), {"dem": taken}, reasons, {})
+
+
+def test_the_name_of_a_narrow_body_and_the_clock_stand_apart(squares, collisions):
+    thin = squares.found["dem"]._replace(points=squares.found["dem"].points * [0.1, 5.0, 1.0])
+    frame = Frame(squares._replace(found={"dem": thin}))
+    frame.show(1)
+    frame.clock.set_animated(False)
+    assert not [pair for pair in collisions(frame.figure) if "t = " in pair]
 
 
 def test_cells_are_displaced_and_coloured_by_their_speed(squares):
