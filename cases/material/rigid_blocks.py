@@ -118,8 +118,12 @@ def _share(scene: RockMass, sets: list[JointSet], real: int) -> RockShare:
     if not spaced:  # rock between single joints stays rigid
         none = np.zeros((0, 2))
         return RockShare(none, none, np.zeros(0), np.full(len(sets), -1), 1.0)
-    rock = elastic_rock(scene.rock)
-    fit = effective_medium.nearest_stiffness(effective_medium.intact(rock, dim), normals)
+    rock, held = elastic_rock(scene.rock), [one for _, one in scene.boundaries]
+    # Between rollers rock has no motion along an axis that no plane crosses: strains in the plane.
+    along = np.abs(normals).max(axis=0) < PARALLEL if dim == 3 else []
+    still = [k for k in np.flatnonzero(along) if held[2 * k : 2 * k + 2] == ["roller"] * 2]
+    flat = np.delete(normals, still[:1], axis=1)
+    fit = effective_medium.nearest_stiffness(effective_medium.intact(rock, flat.shape[1]), flat)
     least = LEAST / np.array([rock.lame + 2 * rock.shear_modulus, rock.shear_modulus])
     index = {one.name: k for k, one in enumerate(sets)}
     direction, apart = np.full(len(sets), -1), np.ones(len(spaced))

@@ -5,7 +5,8 @@ part of the spacing, or at about this size next to single joints. Planes are add
 in which no joints cut: at right angles, or those of ISOTROPIC in rock with a Poisson effect whose
 joints have one direction or none. A quiet side parallel to planes lies at the middle of a block,
 which moves like the lattice there; other sides lie at a plane. Each region of rock has its own
-lattice and a plane along its boundary. Rock no wider than the size is not cut.
+lattice and a plane along its boundary. Rock no wider than the size is not cut, except in layers of
+about one block, which are one row of triangles or tetrahedra.
 """
 
 from math import ceil, inf
@@ -25,6 +26,7 @@ from jointwave.cases.schema.rock_mass import REST, RockMass
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
 ALIKE = 1e-11  #: sine of the angle below which directions are equal
 ACROSS = 3**0.5 / 2
+LAYER = 2 / 3  # least thickness of a layer within wider rock that is cut as this is, in blocks
 #: For 2 or 3 directions in which rock is cut: the planes besides those across the first one, as
 #: normals and spacings over the first spacing. They give long waves one speed in all directions and
 #: any Poisson's ratio: equilateral triangles, or cubes of five tetrahedra each.
@@ -107,8 +109,9 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
                 found.append(_planes(place, normal, block, first.through, True))
         elif (parts := max(1, round(first.spacing / block))) > 1:
             found.append(_set(normal, first.spacing / parts, first.through))
-    across = _across(groups, dim)
-    wide = [axis for axis in across if place.extent(axis) > block]
+    across, corners = _across(groups, dim), np.array(scene.domain.corners)
+    least = [block * (LAYER if np.ptp(corners @ axis) > block else 1.0) for axis in across]
+    wide = [axis for k, axis in enumerate(across) if place.extent(axis) > least[k]]
     if not groups and wide:
         normals = [wide.pop(0)]
         found.append(_planes(place, normals[0], block))
@@ -125,7 +128,7 @@ def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
     if normals and thin:
         # Cuts along periodic sides where rock is not cut otherwise: blocks touch their own images
         # there, and these contacts share the rock's compliance with the other cuts.
-        corners, sides = np.array(scene.domain.corners), shape_of(scene.domain).sides
+        sides = shape_of(scene.domain).sides
         for k in sorted({sides.index(side) // 2 for side in scene.boundaries.sides("periodic")}):
             if np.abs(np.array(thin)[:, k]).max() > ALIKE:
                 extent, low = float(np.ptp(corners[:, k])), corners.min(axis=0).tolist()
@@ -200,5 +203,7 @@ def _planes(
 
 def _divided(reach: float, rest: float, block: float) -> float:
     """Return the spacing, at most 1.5 `block`, that divides a reach into blocks and `rest`."""
+    if reach <= block and rest > 1.5:
+        return reach  # a layer of one row
     whole = max(round(reach / block - rest), ceil(reach / (1.5 * block) - rest - 1e-9), 0)
     return reach / (whole + rest) if whole + rest else reach

@@ -98,22 +98,24 @@ def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
 
 
 def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
-    """Warn of points on welds and roller sides, where triangles' stress does not converge."""
+    """Warn of points near welds and on roller sides, where triangles' stress does not converge."""
     every, block = within(scene, scene.joint_sets), scene.numerics.dem.block
     if block is None or all(squared(x) or len(by_direction(x.joint_sets)) > 1 for x in every):
         return
-    shape, tiny = shape_of(scene.domain), COINCIDENT * scene.reach
+    shape, tiny, near = shape_of(scene.domain), COINCIDENT * scene.reach, block / 3
     rollers = [x for side in scene.boundaries.sides("roller") for x in shape.faces_of(side)]
-    around = tiny * np.array([*product((-1, 1), repeat=scene.domain.dimension)])
+    around = near * np.array([*product((-1, 0, 1), repeat=scene.domain.dimension)])
     for i, at in enumerate(scene.record.points):
         welded = len(set(region_at(scene.regions, np.array(at) + around))) > 1
-        welded &= min((_away(scene, x, np.array([at]))[0] for x in scene.joint_sets), default=1) > 0
+        away = min((_away(scene, x, np.array([at]))[0] for x in scene.joint_sets), default=np.inf)
+        welded &= away > near
         if welded or (rollers and distance(np.array(at), rollers) <= tiny):
-            place = "a welded boundary of regions" if welded else "a roller side"
+            weld = f"within {near:.3g} m of a welded boundary of regions"
+            most = 80 if welded and scene.in_space else 50
             yield (
-                f"record.points[{i}] = {placed(at)} lies on {place}, where the stress of rigid "
-                "blocks is off by up to 50 %, however small they are: half a block away, "
-                f"{block / 2:.3g} m, it converges"
+                f"record.points[{i}] = {placed(at)} lies {weld if welded else 'on a roller side'},"
+                f" where the stress of rigid blocks is off by up to {most} %, however small they "
+                f"are: half a block away, {block / 2:.3g} m, it converges"
             )
 
 

@@ -2,9 +2,9 @@
 
 A block's motion is that of the rock at its centroid. Within intact rock that is cut into blocks,
 motion and stress at a point are the block's own plus a gradient by least squares over neighbouring
-blocks: exact to second order. A triangle at a boundary or a joint has too few neighbours; then
-neighbours of neighbours, of the same orientation, are added. A block between joints on all sides
-moves as a rigid body, u + phi x r, with its mean stress.
+blocks: exact to second order. A triangle or tetrahedron at a boundary or a joint has too few
+neighbours; then neighbours of neighbours are added. A block between joints on all sides moves as a
+rigid body, u + phi x r, with its mean stress.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,6 @@ FLAT = 0.05
 #: Weight of the neighbours in a value of triangles: triangles of opposite orientation are displaced
 #: against each other by the strain times their size.
 SHARED = 0.5
-TRIANGLE = 3  # neighbours of a triangle within rock
 #: Distance, over the size of a contact, below which corners coincide or faces are coplanar.
 SAME = 1e-6
 
@@ -95,7 +94,8 @@ def stencils_in_rock(
     sides : of `sides_at`. sets : number of joint sets. shared : whether neighbours weigh SHARED.
     """
     near, found = rock_neighbours(blocks, sets), []
-    least = TRIANGLE if shared and blocks.body.dim == 2 else 0
+    spread = np.ptp(blocks.centroid, axis=0)  # 0 along an axis that no plane crosses
+    least = 1 + (spread > SAME * spread.max()).sum() if shared else 0
     for k, (at, own) in enumerate(zip(points, sides, strict=True)):
         for block in own:
             beside = near.get(block, [])

@@ -19,9 +19,12 @@ BOX = (6.0, 5.0, 4.0)
 def scene(rock_with):
     """A function of joint sets and more: a scene in blocks of about one size."""
 
-    def make(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), width=None, **boundaries):
+    def make(*sets, block=1.0, poisson=0.0, size=(12.0, 10.0), width=None, layer=0, **boundaries):
         domain = {"size": list(size)} | ({"least_width": width} if width else {})
         tables = {"boundaries": boundaries, "numerics": {"dem": {"block": block}}}
+        if layer:  # of this thickness within the rock
+            origins = [[0.0] * (len(size) - 1) + [up] for up in (1.5, 1.5 + layer)]
+            tables["regions"] = [{"name": f"{at[-1]}", "through": at} for at in origins]
         return rock_with(*sets, poisson=poisson, domain=domain, **tables)
 
     return make
@@ -165,7 +168,8 @@ dips, degrees = st.floats(-90.0, 90.0), st.floats(0.0, 360.0)
 def test_tetrahedra_have_any_poissons_ratio(scene, poisson, dip, towards):
     """As triangles have: rigid blocks lack nothing of intact rock, however the joints lie."""
     one = {"dip": dip, "dip_direction": towards, "spacing": 2.0}
-    for own in (scene(one, poisson=poisson, size=BOX), scene(BED, poisson=poisson)):
+    layered = [scene(poisson=poisson, size=size, layer=0.9) for size in (BOX, BOX[1:])]
+    for own in (scene(one, poisson=poisson, size=BOX), scene(BED, poisson=poisson), *layered):
         joints = rigid_joints(own, further_sets(own))
         assert joints.left_over < 1e-6 and (joints.shear <= joints.normal).all()
 
