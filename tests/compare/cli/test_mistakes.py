@@ -47,10 +47,8 @@ BAD = [
     (("picture", "."), ".: has no result of an engine, such as dem.nc"),
     (("picture", "rock-mass/tunnel", "--explode", "0.2"), f"{OF_SPACE} rock-mass/tunnel\n"),
     (("picture", ".", "--explode", "0.2"), f"{OF_SPACE} a folder\n"),
-    (
-        ("compare", SCENE, "--read", "--sweep", "load.period=1,2"),
-        "--read: is not of a sweep: --out",
-    ),
+    (("compare", SCENE, "--read", "--sweep", "load.period=1,2"), "--read: is not of a sweep: --o"),
+    (("compare", SCENE, "--align"), "--align: needs --with"),
     (("new", "x", "--from", "nothing"), "is neither a file nor a shipped scene"),
 ]
 
@@ -68,7 +66,6 @@ def test_a_mistake_is_one_line_and_exit_2(jointwave, arguments, message):
 
 
 def test_a_message_about_a_long_argument_is_short(jointwave):
-    """Its beginning and its end are present, regardless of the text between them."""
     done = jointwave("run" + "x" * 50_000, SCENE, code=2)
     assert done.err.startswith("jointwave: No such command 'runxxx")
     assert done.err.count("\n") == 1 and len(done.err) < 1600 and " ... " in done.err
@@ -110,7 +107,6 @@ STRICT = {
 
 @pytest.mark.parametrize("command", STRICT)
 def test_strict_refuses_what_is_warned_of(jointwave, command):
-    """A line each."""
     said = jointwave(command, SCENE, *STRICT[command], *SLIPS, "--strict", code=2)
     first, second = said.err.splitlines()
     assert re.search(r"fig-03.toml: rock.density = 2.4 .*\(an error by --strict\)", first)

@@ -24,9 +24,8 @@ def points(velocity=None, stress=None, **attrs):
     data, coords = {}, {"time": TIME}
     for name, dim, components, factors in given:
         if factors is not None:
-            values = np.array(factors, dtype=float)[:, None, :] * WAVE[:, None]
-            data[name] = (("point", "time", dim), values)
-            x = np.arange(float(len(values)))
+            data[name] = ("point", "time", dim), np.multiply.outer(factors, WAVE).swapaxes(1, 2)
+            x = np.arange(float(len(factors)))
             coords |= {dim: components, "point_x": ("point", x), "point_y": ("point", 0 * x)}
     return xr.Dataset(data, coords, {"kind": "rock mass", **attrs})
 

@@ -8,19 +8,11 @@ from jointwave.cases.errors import SceneError
 from jointwave.compare.readings.ground_motion import arias, ppv, ppv_map, response_spectrum
 
 
-def moved(velocity, dt):
-    """Return a result of one receiver that moves with a velocity [n], m/s, along y."""
-    velocity = np.asarray(velocity, dtype=float)
-    time = dt * np.arange(len(velocity))
-    dims = ("velocity_y", "time", "axis")
-    return xr.Dataset(
-        {"velocity": (dims, velocity[None, :, None])},
-        {"time": time, "velocity_y": [3.0], "axis": ["y"]},
-    )
-
-
-def sine(cycles, dt, speed=0.2, omega=2 * np.pi):
-    return moved(speed * np.sin(omega * dt * np.arange(round(cycles / dt) + 1)), dt)
+def sine(cycles, dt):
+    """Return a result of one receiver that moves so many seconds along y, at 0.2 m/s and 1 Hz."""
+    time = dt * np.arange(round(cycles / dt) + 1)
+    velocity = ("velocity_y", "time", "axis"), 0.2 * np.sin(2 * np.pi * time)[None, :, None]
+    return xr.Dataset({"velocity": velocity}, {"time": time, "velocity_y": [3.0], "axis": ["y"]})
 
 
 def test_peak_velocity_is_that_of_the_vector():
