@@ -17,10 +17,9 @@ from jointwave.compare.misfit.pairs import Comparison
 LAYERS = [{"y": 20.0, "spacing_stiffness": 4.375e8}, {"y": 30.0, "cohesion": 5.0e4}]
 JOINTS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 PULSE = {"shape": "ricker", "period": 0.005, "amplitude": 1e6}
-TUNNEL = [[4.0, 2.0], [6.0, 2.0], [6.0, 4.0], [4.0, 4.0]]
 TABLES = {
     "title": "A tunnel in brickwork",
-    "domain": {"size": [10.0, 6.0], "openings": [TUNNEL]},
+    "domain": {"size": [10.0, 6.0], "openings": [[[4, 2], [6, 2], [6, 4], [4, 4]]]},
     "rock": {"density": 2600.0, "intact_modulus": 5e10},
     "joint_sets": [
         {"name": "rows", "dip": 0.0, "spacing": 1.0, "friction_angle": 30.0, **JOINTS},
@@ -41,18 +40,12 @@ def drawing(*scenes):
 
 
 def mass(**changes):
-    """Return the figure of the tunnel with tables changed."""
     return drawing(load_tables(TABLES | changes)).figure
 
 
 def words(figure):
-    """Return the entries of the legend."""
     (found,) = figure.legends
     return [text.get_text() for text in found.texts]
-
-
-def notes(figure):
-    return [text.get_text() for text in figure.axes[0].texts if text.get_text()]
 
 
 def arrows(figure):
@@ -75,8 +68,8 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
     (blocks,) = [c for c in ax.collections if isinstance(c, PolyCollection)]
     joints, *layers = [c for c in ax.collections if isinstance(c, LineCollection)]
     assert len(blocks.get_paths()) == 100
-    at = [segment[0][0] for segment in joints.get_segments()]
-    np.testing.assert_allclose(at, np.setdiff1d(np.arange(0.5, 50, 0.5), [20.0, 30.0]))
+    places = [segment[0][0] for segment in joints.get_segments()]
+    np.testing.assert_allclose(places, np.setdiff1d(np.arange(0.5, 50, 0.5), [20.0, 30.0]))
     assert [lines.get_segments()[0][0][0] for lines in layers[:2]] == [20.0, 30.0]
     assert [list(line.get_xdata()) for line in ax.lines] == [[10.0, 20.0, 47.5], [0.25, 19.75]]
     assert words(figure) == [
@@ -101,7 +94,8 @@ def test_every_block_joint_layer_and_receiver_is_drawn_in_its_place(pillar):
 )
 def test_what_acts_is_drawn_as_arrows_or_said(pillar, changes, count, said):
     figure = drawing(pillar(**changes)).figure
-    assert len(arrows(figure)) == count and notes(figure) == said
+    notes = [text.get_text() for text in figure.axes[0].texts if text.get_text()]
+    assert len(arrows(figure)) == count and notes == said
 
 
 @pytest.mark.parametrize("direction", [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [-0.6, 0.8, 0.0]])
@@ -123,8 +117,7 @@ def test_a_squat_pillar_is_true_to_scale_and_a_slender_one_says_by_how_much(pill
     squat = sketch_of(pillar(pillar__length=4.0, pillar__side=2.0, record__stress=[2.0]))
     assert squat.stretch == 1 and "thickness ×" not in squat.size
     slender = sketch_of(pillar())
-    across = slender.high[0] - slender.low[0]
-    assert slender.stretch * 0.5 == pytest.approx(THIN * across)
+    assert slender.stretch * 0.5 == pytest.approx(THIN * (slender.high[0] - slender.low[0]))
     assert f"thickness × {slender.stretch:.2g}" in slender.size
     count = 2 * MANY
     blocks, joints, *_ = (many := sketch_of(pillar(pillar__length=0.5 * count))).shapes

@@ -1,5 +1,7 @@
 """Maps of whole bodies: what they show against the results, on one scale, in words and colours."""
 
+from math import nan
+
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection, PolyCollection
@@ -185,7 +187,10 @@ def test_what_cannot_be_drawn_is_said_in_one_line(results, blow):
     bar = jw.simulate(jw.load("guo-li-2002/fig-03", changes={"record.fields": 1e-3}))
     for result, arguments, said in (
         (blocks, ("heat",), "map = 'heat': must be one of ppv, speed, stress, slip"),
-        (blocks, ("speed", None, 9.0), "time = 9.0: must be from 0 to 0.03 s"),
+        *(
+            (blocks, ("speed", None, t), f"time = {t}: must be from 0 to 0.03 s")
+            for t in (9.0, nan)
+        ),
         (blocks, ("ppv", None, 0.01), "ppv the largest of all"),
         (blocks, ("ppv", blow[1]), "different bodies"),
         (blocks, ("ppv", blocks.drop_vars("field_cells")), "record.fields: is needed for a map"),

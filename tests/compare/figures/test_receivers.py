@@ -48,7 +48,6 @@ def test_a_panel_shows_a_component_that_moves(solved, changes, places):
 
 
 def test_nothing_moves_sideways_at_a_level_joint(one_joint):
-    """The wave travels upwards."""
     record = {"points": [[10.0, 5.0]], "joints": [[10.0, 10.0]], "interval": 1e-4}
     tables = one_joint(domain={"size": [20.0, 20.0]}, time={"duration": 0.02}, record=record)
     tables["joint_sets"][0] |= {"through": [10.0, 10.0], "dip": 0.0}

@@ -13,7 +13,6 @@ from jointwave.results.dataset import energy_residual
 
 @pytest.fixture(scope="module")
 def comparisons(pillar, compared):
-    """Variants of one pillar, the second of them damped."""
     short = {"time.duration": 0.03}
     scenes = [pillar(**short, **c) for c in ({}, {"joints.damping_ratio": 0.05})]
     return compared(scenes[0], scenes[1].model_copy(update={"name": "damped"}))
@@ -21,7 +20,6 @@ def comparisons(pillar, compared):
 
 @pytest.fixture(scope="module")
 def pictures(comparisons):
-    """Return the pictures by name."""
     fields = [
         {name: solve(name, recorded_along(c.scene)) for name in ("dem", "lattice")}
         for c in comparisons

@@ -15,7 +15,6 @@ def fields_of(scene, *names):
 
 
 def test_a_scene_that_records_velocities_is_drawn_by_them(pillar):
-    """At the centres of blocks."""
     scene = pillar(time__duration=0.03, record__stress=[], record__velocity=[20.25])
     shown = space_time("fig", scene, "a", fields_of(scene, "dem", "lattice"))[0]
     assert shown.title == "Velocity along the pillar over time, a"
@@ -36,8 +35,6 @@ def test_sections_are_the_waveforms_of_the_comparison(pillar, compared, monkeypa
 
 
 def test_sections_are_joints_and_both_ends(pillar):
-    """Few blocks show no wave."""
-
     def sections(**changes):
         return recorded_along(pillar(**changes)).record.stress
 

@@ -1,23 +1,14 @@
 """Waveforms that share a pair of axes, and their residuals from the reference."""
 
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from jointwave import cases
 from jointwave.compare.engines import applies, label_of, solve
-from jointwave.compare.figures.charts.waveforms import (
-    MOST,
-    REFERENCE,
-    by_variant,
-    changed_key,
-    draw_overlays,
-    draw_solutions,
-    variant_styles,
-    waveforms,
-)
+from jointwave.compare.figures.charts import waveforms as charts
+from jointwave.compare.figures.charts.waveforms import MOST, REFERENCE, by_variant, draw_solutions
 from jointwave.compare.figures.receivers import panels, variant_names
 from jointwave.compare.figures.style import GIVEN
 from jointwave.compare.misfit.alignment import align_curve
@@ -25,10 +16,11 @@ from jointwave.compare.misfit.external import Curves
 from jointwave.compare.misfit.pairs import Comparison
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.misfit.ranking import finest
+from jointwave.compare.scenes import find
 
-SHIPPED = Path(cases.__file__).parent
 SHORT = {"time__duration": 0.03}
 DAMPED = {"joints__damping_ratio": 0.1}
+DAMPINGS = ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"]
 
 
 @pytest.fixture
@@ -52,11 +44,7 @@ def solved(pillar):
 @pytest.mark.parametrize(
     ("name", "key", "words"),
     [
-        (
-            "guo-li-2002/fig-03",
-            "joints.damping_ratio",
-            ["undamped", "ζ = 0.02", "ζ = 0.05", "ζ = 0.1"],
-        ),
+        ("guo-li-2002/fig-03", "joints.damping_ratio", DAMPINGS),
         ("guo-li-2002/fig-05", "ends.end", ["free", "quiet", "matched"]),
         ("guo-li-2002/fig-07", "soft_layers", ["no soft layer", "soft layer"]),
         ("guo-li-2002/fig-09", "joints.tension", ["tension", "no tension"]),
@@ -65,8 +53,8 @@ def solved(pillar):
     ],
 )
 def test_variants_are_named_by_the_key_that_makes_them(name, key, words):
-    found = [Comparison(scene) for scene in cases.load(SHIPPED / f"{name}.toml")]
-    assert changed_key(found) == key
+    found = [Comparison(scene) for scene in cases.load(find(name))]
+    assert charts.changed_key(found) == key
     assert words is None or variant_names(found) == words
 
 
@@ -80,7 +68,7 @@ def test_variants_of_one_key_share_a_pair_of_axes_an_engine(solved, collisions):
             np.testing.assert_array_equal(trace.curve, comparison.results[engine].stress.values[0])
     assert all(t.residual.abs().max() == 0 for t in jointed.traces if t.label != REFERENCE)
     assert bar.traces[0].residual.any() and bar.reference == "jointed bar, exact"
-    assert collisions(draw_overlays(by_variant(found))) == []  # nor do headings meet
+    assert collisions(charts.draw_overlays(by_variant(found))) == []  # nor do headings meet
 
 
 def test_variants_that_differ_twice_or_record_something_else_do_not(solved, pillar):
@@ -118,7 +106,7 @@ def test_a_residual_is_a_solution_less_the_reference_on_a_scale_of_its_own(solve
 
 @pytest.mark.parametrize("count", range(2, MOST + 1))
 def test_every_variant_is_seen_where_all_coincide(count):
-    styles = sorted(variant_styles(count), key=lambda style: style.order)
+    styles = sorted(charts.variant_styles(count), key=lambda style: style.order)
     assert all(a.width > b.width + 0.3 for a, b in pairwise(styles))
 
 
@@ -130,7 +118,7 @@ def test_curves_of_others_stand_beside_at_their_own_times(solved):
     values = {Place("stress", "", (20.0,)): np.array([0.0, 1e5, 8e5, -2e5])}
     curves = Curves("lab.csv", "lab.csv", time, values)
     found.besides.append(align_curve(curves, found.scene, found.results, False))
-    (picture,) = waveforms("fig", [found])
+    (picture,) = charts.waveforms("fig", [found])
     (line,) = (x for x in picture.figure.axes[0].lines if x.get_label() == "lab.csv")
     np.testing.assert_allclose(line.get_xdata(), 1e3 * time)
     np.testing.assert_allclose(line.get_ydata(), [0.0, 0.1, 0.8, -0.2])

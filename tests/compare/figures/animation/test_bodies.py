@@ -6,15 +6,8 @@ import pytest
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from jointwave.compare.figures.animation.bodies import (
-    ABOVE,
-    FACES,
-    FRONT,
-    OBLIQUE,
-    Body,
-    BodyView,
-    body_of,
-)
+from jointwave.compare.figures.animation import bodies
+from jointwave.compare.figures.animation.bodies import Body, body_of
 from jointwave.compare.figures.animation.snapshots import PRINCIPAL, STRESS, VELOCITY, ViewSettings
 from jointwave.compare.figures.export import blank
 from jointwave.compare.figures.style import RC
@@ -87,25 +80,25 @@ def test_the_principal_stress_of_larger_size_in_the_plane_and_in_space(row):
     np.testing.assert_allclose(space.values[:, 0], [-5.0, plane.values[1, 0]], rtol=1e-12)
 
 
-def picture(body, per_away, i):
-    """Return the picture of a body at an instant."""
+def picture(body, per_away):
+    """Return the picture of a body at its first instant."""
     with blank(2.0, RC | {"figure.figsize": (10.0, 2.0)}) as figure:
         figure.set_layout_engine("none")
         ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         ax.set_axis_off()
-        BodyView(ax, body, COLOURS, per_away).show(i)
+        bodies.BodyView(ax, body, COLOURS, per_away).show(0)
         figure.canvas.draw()
     return np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
 
 
 @pytest.mark.parametrize("order", [[0, 1], [1, 0]])
-@pytest.mark.parametrize("per_away", [FRONT, OBLIQUE])
+@pytest.mark.parametrize("per_away", [bodies.FRONT, bodies.OBLIQUE])
 def test_what_is_near_hides_what_is_far(per_away, order):
     """Two plates of which the first is nearer to the viewer by 0.1 m, in any order."""
     rest = np.concatenate([PLATE, PLATE + np.array([0.0, 0.1, 0.0])])
     faces, values = np.array([[0, 2, 3, 5], [6, 8, 9, 11]]), np.array([[1.0, -1.0]])
     still = np.zeros((1, 12, 3))
-    shown = picture(Body(rest, still, faces[order], values[:, order], np.array(order)), per_away, 0)
+    shown = picture(Body(rest, still, faces[order], values[:, order], np.array(order)), per_away)
     middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
     assert middle[0] > middle[2] + 50
 
@@ -117,12 +110,10 @@ def test_a_small_block_stands_in_front_of_the_large_one_under_it(order):
     corner = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     unit = np.concatenate([corner, corner + Z])
     rest = np.concatenate([unit * [10, 10, 1], unit * 2 + [0, 8, 1]])
-    rings = np.array(FACES["hexahedron"])
-    faces = np.concatenate([rings, rings + 8])
-    block = np.repeat(order, 6)
+    rings = np.array(bodies.FACES["hexahedron"])
     values = np.repeat([-1.0, 1.0], 6)[None]  # blue and red
-    red, _, blue = np.moveaxis(
-        picture(Body(rest, np.zeros((1, 16, 3)), faces, values, block), ABOVE, 0), -1, 0
-    )
+    still, faces = np.zeros((1, 16, 3)), np.concatenate([rings, rings + 8])
+    body = Body(rest, still, faces, values, np.repeat(order, 6))
+    red, _, blue = np.moveaxis(picture(body, bodies.ABOVE), -1, 0)
     share = (red > blue + 50).sum() / (blue > red + 50).sum()
     assert share == pytest.approx(6.8 / 42.8, rel=0.05)  # edges are drawn, too

@@ -68,7 +68,7 @@ def test_a_receiver_is_drawn_sample_by_sample_up_to_the_frame(simulated):
     """Six frames miss the wave's peaks; the samples between them are drawn all the same."""
     taken = simulated(6)
     frame = Frame(taken)
-    label = next(iter(frame.traces.values())).axes.get_ylabel()
+    (label,) = {trace.axes.get_ylabel() for trace in frame.traces.values()}
     size = {"stress\n(MPa)": 1e6, "stress\n(kPa)": 1e3}[label]
     for i in (0, 3, 5):
         frame.show(i)
@@ -88,9 +88,6 @@ def test_a_pillar_at_rest_is_drawn(simulated):
     assert Frame(taken._replace(found=still)).image(20).std() > 0
 
 
-TURN = 0.1  # rad
-
-
 def test_snapshots_are_drawn_in_the_colour_of_their_stress(row, pillar, collisions, tmp_path):
     """Three unit blocks: the second moves a little to the right, the third turns about x. The three
     faces of each block that face the viewer are drawn, compression red and tension blue; each
@@ -98,7 +95,7 @@ def test_snapshots_are_drawn_in_the_colour_of_their_stress(row, pillar, collisio
 
     def moved(points):
         at = np.repeat([0, 1, 2], 8)
-        turned = np.where(at == 2, TURN, 0.0)
+        turned = np.where(at == 2, 0.1, 0.0)  # rad
         along = 0.01 * (at == 1) + turned * points[:, 2]
         return np.stack([0 * along, along, -turned * (points[:, 1] - 2.5)], axis=1)
 

@@ -14,11 +14,8 @@ LONG = {"pillar__length": 30.0}
 def scene(pillar):
     """Blocks of 1 m in a pillar of 10 m, with keys changed."""
 
-    def made(**changes):
-        keys = {"pillar": {"length": 10.0, "side": 1.0, "block": 1.0}, "record": {"stress": [5.0]}}
-        return pillar(**(keys | changes))
-
-    return made
+    keys = {"pillar": {"length": 10.0, "side": 1.0, "block": 1.0}, "record": {"stress": [5.0]}}
+    return lambda **changes: pillar(**keys | changes)
 
 
 def step(size):
