@@ -125,7 +125,6 @@ def _refuse_outside(url, path, complaints):
 
 
 def unfold(page):
-    """Open every fold."""
     page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true })")
 
 

@@ -47,7 +47,6 @@ def every(quantity, change):
 
 
 def swapped(comparisons):
-    """Return the variants with their results the other way round."""
     results = [c.results for c in comparisons][::-1]
     return [replace(c, results=r) for c, r in zip(comparisons, results, strict=True)]
 
@@ -79,11 +78,6 @@ def after(time, factor):
     return lambda wave, t: np.where(t > time, factor * wave, wave)
 
 
-def first_only(wave, t):
-    """Return the incident pulses only: zero from 38 ms on, when the end reflects them."""
-    return np.where(t < 0.038, wave, 0.0)
-
-
 def late_at_the_last(wave, t):
     """Return waveforms of which the sections after the first are 2 ms late."""
     wave[1:] = np.roll(wave[1:], round(2e-3 / t[1]), axis=-1)
@@ -98,7 +92,7 @@ FALSE = {
     pillar.falls_with_damping: swapped,
     travel.travels: every("stress", late_at_the_last),
     travel.reflection: every("stress", after(0.045, -1)),
-    travel.superposition: every("stress", first_only),
+    travel.superposition: every("stress", after(0.038, 0)),  # when the end reflects the pulses
     travel.quiet_end: end_as("quiet", "free"),
     travel.left_by_the_quiet_end: end_as("quiet", "matched"),
     travel.matched_end: end_as("matched", "quiet"),

@@ -33,14 +33,13 @@ Yade spheres,,missing,no apt here,cohesive spheres,,,,,,,,,,a quiet one
 @pytest.fixture(scope="module")
 def built(once):
     """Return the whole report, with a small table of other codes, and what its progress was."""
+
+    def build_whole(folder):
+        (table := folder / "points.csv").write_text(PEERS)
+        fractions = []
+        return build(folder / "report", fractions.append, peers_table=table, hard=False), fractions
+
     return once("whole-report", build_whole)
-
-
-def build_whole(folder):
-    table = folder / "points.csv"
-    table.write_text(PEERS, encoding="utf-8")
-    fractions = []
-    return build(folder / "report", fractions.append, peers_table=table, hard=False), fractions
 
 
 @pytest.fixture(scope="module")
@@ -55,12 +54,10 @@ def figures(report):
 
 @pytest.fixture(scope="module")
 def text(report):
-    """Return the page's HTML."""
     return report.file.read_text(encoding="utf-8")
 
 
 def part(text, name):
-    """Return a section of the page."""
     found = html.unescape(text[text.index(f'<section id="{name}"') :])
     return found[: found.index("</section>")].replace("\u00a0", " ")
 
@@ -121,7 +118,6 @@ def test_all_claims_of_the_paper_hold_and_most_of_its_own_distance_is_dispersion
 
 @pytest.mark.parametrize("name", [*FIGURES, "one-joint"])
 def test_every_scene_has_every_kind_of_picture(figures, text, name):
-    """Each with its files and at least both engines in it."""
     drawn = re.findall(rf'<figure id="({name}-[a-z0-9-]+)-figure"', part(text, name))
     kinds = {"scene", "waveforms", "spectra", "energy"}
     kinds |= {"space-time-0"} if name in FIGURES else set()
@@ -151,7 +147,6 @@ def test_the_pillar_in_motion_is_drawn_listed_and_opened_in_a_viewer(report, fig
 
 @pytest.mark.parametrize("name", REPORTED)
 def test_page_shows_what_each_study_found(name, text, report):
-    """Its diagram, and every point of its table below the label of its curve."""
     found = part(text, f"study-{name}")
     assert "<img" in found and "Failed or missing" not in found
     body = found[found.index("<tbody>") : found.index("</tbody>")]

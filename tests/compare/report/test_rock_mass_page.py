@@ -7,26 +7,23 @@ import pytest
 
 from jointwave.compare.report.report import build
 
-SQUARE = {
-    "title": "One joint in a small square",
-    "domain": {"size": [12.0, 12.0]},
-    "time": {"duration": 0.02},
-    "numerics": {"dem": {"block": 1.2}},
-    "record": {"points": [[6.0, 9.0]], "joints": [[6.0, 6.0]]},
-    "expect": {"continuum-jointed ~ oblique-joint": 0.01},
-}
-JOINT = {"dip": 20.0, "through": [6.0, 6.0], "normal_stiffness": 2e10, "shear_stiffness": 1e10}
-
 
 @pytest.fixture(scope="module")
 def found(once, one_joint, in_toml):
     """Return the page's text without pictures and style, and the report."""
-    scene = one_joint(**SQUARE)
-    scene["joint_sets"][0] |= JOINT
+    scene = one_joint(
+        title="One joint in a small square",
+        domain={"size": [12.0, 12.0]},
+        time={"duration": 0.02},
+        numerics={"dem": {"block": 1.2}},
+        record={"points": [[6.0, 9.0]], "joints": [[6.0, 6.0]]},
+        expect={"continuum-jointed ~ oblique-joint": 0.01},
+    )
+    stiff = {"normal_stiffness": 2e10, "shear_stiffness": 1e10}
+    scene["joint_sets"][0] |= stiff | {"dip": 20.0, "through": [6.0, 6.0]}
 
     def build_page(folder):
-        file = folder / "square.toml"
-        file.write_text(in_toml(scene), encoding="utf-8")
+        (file := folder / "square.toml").write_text(in_toml(scene))
         return build(folder / "report", workers=1, scenes=[str(file)])
 
     report = once("rock-mass-page", build_page)

@@ -126,10 +126,8 @@ def test_every_component_at_a_receiver_has_a_column_of_its_own(pillar):
     }
     (row,) = misfit_table([Comparison(pillar(), results, {}, measure(results))]).to_dict("records")
     found = {name.rpartition(", ")[2]: misfit for name, misfit in row.items()}
-    assert found == {
-        f"velocity {axis} at 20 m (%)": pytest.approx(off)
-        for axis, off in zip("xyz", (1, 2, 3), strict=True)
-    }
+    names = [f"velocity {axis} at 20 m (%)" for axis in "xyz"]
+    assert found == pytest.approx(dict(zip(names, (1, 2, 3), strict=True)))
     places = 20.0 + np.arange(6)  # many columns are rows
     many = {name: x.sel(velocity_y=[20.0] * 6) for name, x in results.items()}
     many = {name: x.assign_coords(velocity_y=places) for name, x in many.items()}
@@ -192,14 +190,10 @@ def test_everything_is_there_on_request_and_in_json(compared, answer):
 
 def scene_of(seconds, against="jointed-bar", kind="pillar", **total):
     """Return a solved scene with the seconds and the misfit of each engine."""
-    scores = {
-        engine.replace("_", "-"): EngineScore(
-            (VariantScore("", Worst(nan), Worst(x), against, "", ()),)
-        )
-        for engine, x in total.items()
-    }
-    costs = dict(zip(scores, seconds, strict=True))
-    scene = SimpleNamespace(kind=kind)
+    variants = (VariantScore("", Worst(nan), Worst(x), against, "", ()) for x in total.values())
+    engines = [name.replace("_", "-") for name in total]
+    scores = {name: EngineScore((one,)) for name, one in zip(engines, variants, strict=True)}
+    scene, costs = SimpleNamespace(kind=kind), dict(zip(engines, seconds, strict=True))
     return SolvedScene(None, scene, costs, None, [], [], {}, {}, scores, None, {})
 
 
