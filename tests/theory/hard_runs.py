@@ -115,22 +115,18 @@ class HardRun:
         return None, np.nan
 
     def phase_error(self):
-        """Return the misfit due to the steps of a second-order scheme at the end of a run.
-
-        A relative error e of the frequency omega is the phase e omega t at time t, and a wave that
-        is wrong by a small phase has a relative error of the same size: C (omega dt)^2 omega t,
-        averaged over the spectrum.
-        """
+        """Return the misfit due to the steps of a second-order scheme at the end of a run. A
+        relative error e of the frequency omega is the phase e omega t at time t, and a wave that is
+        wrong by a small phase has a relative error of the same size: C (omega dt)^2 omega t,
+        averaged over the spectrum."""
         return ERROR[self.scheme] * (self.peak * self.dt) ** 2 * CUBES * self.peak * self.duration
 
     def element_error(self):
         """Return the misfit due to quadratic GLL elements at the end of a run; none for blocks.
-
         Their phase speed is wrong by (omega tau)^4 / 2880, tau the time through an element
         (Ainsworth & Wajid, SIAM J. Numer. Anal. 47, 2009). The traction of a joint that is recorded
         is known to the round-off of its gap, eps K u, with u no more than 2 p t / Z under a stress
-        p; ten operations of this are allowed.
-        """
+        p; ten operations of this are allowed."""
         if self.engine.has_rigid_blocks:
             return 0.0
         p, t = self.properties, self.duration
@@ -141,10 +137,8 @@ class HardRun:
 
     def corner_error(self):
         """Return the misfit from the two kinks of a sine that starts and ends; none for a wavelet.
-
         A change of slope s has the spectrum s / omega^2; what of it is beyond the w of `lost_after`
-        is lost: by Parseval s^2 (4 + 1/5) / (3 pi w^3), against cycles T / 2 of the sine.
-        """
+        is lost: by Parseval s^2 (4 + 1/5) / (3 pi w^3), against cycles T / 2 of the sine."""
         load = self.scene.load
         if load.shape != "sine":
             return 0.0
@@ -152,10 +146,8 @@ class HardRun:
         return sqrt(square / ((load.cycles or 1) * load.period / 2))
 
     def lost_after(self):
-        """Return 1 / w (s): frequencies beyond w have lost their phase by the end of a run.
-
-        That of the steps is C (w dt)^2 w t = 1, that of elements (w tau)^4 w t / 2880 = 1.
-        """
+        """Return 1 / w (s): frequencies beyond w have lost their phase by the end of a run. That of
+        the steps is C (w dt)^2 w t = 1, that of elements (w tau)^4 w t / 2880 = 1."""
         lost = (ERROR[self.scheme] * self.dt**2 * self.duration) ** (1 / 3)
         if self.engine.has_rigid_blocks:
             return lost

@@ -8,15 +8,9 @@ import numpy as np
 
 from closed_forms.manufactured import Manufactured
 from jointwave.continuum.mesh.conforming import Conforming, Marks, facets_of
-from jointwave.continuum.space import compat
+from jointwave.continuum.space import compat, evaluation
 from jointwave.continuum.space.build import Elements
-from jointwave.continuum.space.evaluation import (
-    Places,
-    at_reference,
-    jacobians,
-    nodes_of_cells,
-    tabulate,
-)
+from jointwave.continuum.space.evaluation import nodes_of_cells
 from jointwave.continuum.space.model import Body
 from jointwave.continuum.space.rock import isotropic
 
@@ -36,7 +30,7 @@ class Moved(NamedTuple):
 
     body: Body
     motion: Manufactured
-    at: Places
+    at: evaluation.Places
     x: np.ndarray
     volume: np.ndarray
     inertia: np.ndarray
@@ -79,10 +73,12 @@ def moved(kind, order, count) -> Moved:
     motion = Manufactured(WAVES[:dim, :dim], PHASES[:dim], 4000.0, 0.4)
     points, weights = compat.quadrature(kind, 2 * order + 4)
     cell, local = np.repeat(np.arange(len(cells)), len(points)), np.tile(points, (len(cells), 1))
-    at = at_reference(body, cell, cell, local)
+    at = evaluation.at_reference(body, cell, cell, local)
     corners = compat.cell_corners(body.mesh)[cell]
-    places = np.einsum("nv,nvd->nd", tabulate(compat.reference(kind, 1), local)[0], corners)
-    volume = np.abs(np.linalg.det(jacobians(kind, corners, local))) * np.tile(weights, len(cells))
+    shapes = evaluation.tabulate(compat.reference(kind, 1), local)[0]
+    places = np.einsum("nv,nvd->nd", shapes, corners)
+    change = np.linalg.det(evaluation.jacobians(kind, corners, local))
+    volume = np.abs(change) * np.tile(weights, len(cells))
     stress = motion.stress(places, LAME, SHEAR)
     inertia = DENSITY * at.basis[:, :, None] * motion.displacement(places)[:, None]
     elastic = np.einsum("nkj,ncj->nkc", at.gradient, stress)

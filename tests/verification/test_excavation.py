@@ -21,7 +21,6 @@ from tests.continuum.drawing import crossed, grouped
 HOLE = Kirsch(radius=1.0, stress=(10e6, 4e6), modulus=5e10, poisson=0.25)
 HALF = 4.0  # m, of the domain's width
 SIZE = 0.25  # m, of triangles
-SIDES = ["left", "right", "bottom", "top"]
 PLACES = [[1.9, 0.2], [0.1, 1.4], [-1.2, 1.3]]
 SCENE = f"""
 title = "a tunnel"
@@ -74,7 +73,7 @@ def excavated(folder, text):
     (folder / "scene.toml").write_text(text)
     (scene,) = load(folder / "scene.toml")
     problem = plan_of(scene).problem
-    sides = facets_on(problem.body, SIDES)
+    sides = facets_on(problem.body, ["left", "right", "bottom", "top"])
     added = np.diag(HOLE.stress) - HOLE.stress_at(sides.place)
     beyond = forces_on(problem.body, sides, np.einsum("nij,nj->ni", added, sides.normal))
     problem = problem._replace(steady=problem.steady + beyond)

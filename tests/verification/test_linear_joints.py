@@ -1,5 +1,5 @@
-"""Harmonic transmission through linear joints: one, several in parallel, and a thin soft layer that
-is meshed as rock.
+"""Harmonic transmission through linear joints: several in parallel, and a thin soft layer that is
+meshed as rock.
 
 Amplitudes are those of a Ricker pulse at its peak frequency, of which the exact incident wave is
 known. Per wavelength there are 20 quadratic elements, whose phase error per wavelength, below
@@ -55,28 +55,12 @@ def shares(scene):
     return amplitude(times, stress[0] - incident) / whole, amplitude(times, stress[-1]) / whole
 
 
-@pytest.mark.parametrize(
-    ("kappa", "passes"), [(0.25, 0.4472), (0.5, 0.7071), (1.0, 0.8944), (5.0, 0.9950)]
-)
-def test_one_joint(bar, kappa, passes):
-    """|T| and |R| of Schoenberg (1980) within 0.1 %."""
-    R, T = shares(bar(soft_layers=[soft_joint(20.0, kappa)]))
-    exact = np.abs(one_joint.coefficients(1.0, kappa, 1.0))
-    assert exact[0] == pytest.approx(passes, abs=5e-5)
-    assert pytest.approx(exact, rel=1e-3) == (T, R)
-
-
-@pytest.mark.parametrize(
-    ("count", "spacing", "passes"),
-    [(2, 0.05, 0.7822), (2, 0.2, 0.9864), (3, 0.1, 0.9995), (5, 0.05, 0.9963), (5, 0.2, 0.9468)],
-)
-def test_parallel_joints(bar, count, spacing, passes):
+@pytest.mark.parametrize("count, spacing", [(2, 0.05), (2, 0.2), (3, 0.1), (5, 0.05), (5, 0.2)])
+def test_parallel_joints(bar, count, spacing):
     """|T| at kappa = 1 by transfer matrices (Cai & Zhao, 2000) within 0.1 %."""
     layers = [soft_joint(y, 1.0) for y in 20.0 + 20.0 * spacing * np.arange(count)]
     _, T = shares(bar(soft_layers=layers, time__duration=0.4, record__stress=[10.0, 50.0]))
-    exact = parallel_joints.transmission(count, 1.0, spacing)
-    assert exact == pytest.approx(passes, abs=5e-5)
-    assert pytest.approx(exact, rel=1e-3) == T
+    assert pytest.approx(parallel_joints.transmission(count, 1.0, spacing), rel=1e-3) == T
 
 
 def test_a_layer_that_is_meshed_has_its_mass_and_the_interface_has_none(bar):
@@ -86,13 +70,11 @@ def test_a_layer_that_is_meshed_has_its_mass_and_the_interface_has_none(bar):
     ratio, phase = 0.1, 0.3
     thickness = phase * ratio * SPEED * PERIOD / (2 * np.pi)
     layer = {"y": 20.0, "normal_stiffness": ratio**2 * MODULUS / thickness}
-    kappa = thin_layer.joint(ratio, phase)
-    meshed, interface = thin_layer.transmission(ratio, phase), one_joint.coefficients(1, kappa, 1)
-    for one, exact, passes in (
-        (layer | {"thickness": thickness}, meshed, 0.5643),
-        (soft_joint(20.0, kappa, block=0.0), abs(interface[0]), 0.5547),
+    meshed, interface = thin_layer.transmission(ratio, phase), parallel_joints.transmission
+    for one, exact in (
+        (layer | {"thickness": thickness}, meshed),
+        (soft_joint(20.0, ratio / phase, block=0.0), interface(1, ratio / phase, 0.0)),
     ):
-        assert exact == pytest.approx(passes, abs=5e-5)
         scene = bar(soft_layers=[one], rock__intact_modulus=(1 + 1e-9) * MODULUS)
         assert pytest.approx(exact, rel=1e-3) == shares(scene)[1]
 

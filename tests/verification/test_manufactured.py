@@ -19,15 +19,12 @@ NEVER = 10**9  # steps between samples
 
 
 def free(one):
-    """Return the problem of a body alone."""
     return Problem(one.body, readings(one.body))
 
 
 def drive(one, dt, steps, inertia):
-    """Return the displacement after so many steps dt (s) of leapfrog from the exact start.
-
-    inertia : g'' (1/s2) at a time (s).
-    """
+    """Return the displacement after so many steps dt (s) of leapfrog from the exact start. inertia
+    : g'' (1/s2) at a time (s)."""
     g, start = one.motion.history, one.motion.displacement(one.body.x).ravel()
     leapfrog = Leapfrog(free(one)._replace(forces=Load(one, dt, inertia)), dt, 1)
     leapfrog.start(g(0.0) * start)

@@ -4,7 +4,7 @@ and opens again; and one that slips under a harmonic shear wave, in rigid blocks
 The half wavelet that is compressed arrives while the joint is shut; what came before has opened it.
 """
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from jointwave import cases, continuum, dem
 from jointwave.cases.loads import load_history
 from jointwave.compare.scenes import SHIPPED
 
+bar = partial(continuum.simulate, model="equivalent", dim=1)
 SPEED, Z, WAVELET = 2000.0, 2400.0 * 2000.0, 0.01
 SIDES = 20.0 - 1e-6, 20.0 + 1e-6  # m, of the joint
 #: A layer that differs in strength alone takes a tenth of a joint out of the homogenised blocks of
@@ -27,11 +28,10 @@ CLOSES = 1.5 * WAVELET + 20.0 / SPEED  # at the middle of the wavelet, whose imp
 def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
     """While open: no traction at all, and v_T but for the 1e-8 of the wavelet that arrives before
     it pulls; v_R = v_I and a gap rate of -2 v_I within `BESIDE` and 0.1 %, 80 quadratic elements
-    and more than 1000 steps a wavelength.
-
-    It closes at the middle of the wavelet, to a sample. The stiffness of ten ordinary joints is
-    pressed in by p / K and, as by any mass that lands on a spring, at most twice that; what is
-    pressed in comes out again, so that the impulse that passes is the rigid joint's within 1 %."""
+    and more than 1000 steps a wavelength. It closes at the middle of the wavelet, to a sample. The
+    stiffness of ten ordinary joints is pressed in by p / K and, as by any mass that lands on a
+    spring, at most twice that; what is pressed in comes out again, so that the impulse that passes
+    is the rigid joint's within 1 %."""
     scene = pillar(
         pillar={"length": 60.0, "side": 0.5, "block": 1.0},
         rock={"density": 2400.0, "equivalent_modulus": 9.6e9, "equivalent_poisson": 0.25},
@@ -42,7 +42,7 @@ def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
         record={"stress": [10.0, 20.0, 30.0], "velocity": list(SIDES), "interval": 1e-5},
         numerics__continuum__elements_per_block=4,
     )
-    result, load = continuum.simulate(scene, "equivalent", dim=1), load_history(scene)
+    result, load = bar(scene), load_history(scene)
     times, stress = result.time.values, result.stress.values
     velocity, displacement = result.velocity.values[..., 0], result.displacement.values[..., 0]
     gap = displacement[1] - displacement[0]
@@ -68,18 +68,9 @@ def test_open_faces_are_free_and_close_when_the_gap_is_back_at_zero(pillar):
 
 
 SCENE = SHIPPED / "beyond" / "slip-three-cohesions.toml"
-PERIOD, INTERVAL = 0.04, 1e-4
+PERIOD = 0.04  # s
 #: One period of the four that are at the joint from 0.03125 to 0.19125 s.
 CYCLE = slice(1501, 1901)
-SHARES = {
-    0.5: (0.6253, 0.4159, 0.6603),
-    0.1: (0.1384, 0.8746, 0.4647),
-    0.02: (0.0282, 0.9746, 0.2221),
-}
-
-
-def bar(scene):
-    return continuum.simulate(scene, "equivalent", dim=1)
 
 
 @cache
@@ -88,7 +79,7 @@ def slipping(engine, strength):
     changes = {
         "soft_layers": [{"y": 25.0, "cohesion": strength, "friction_angle": 0.0}],
         "record.stress": [25.0],
-        "record.interval": INTERVAL,
+        "record.interval": 1e-4,
         "variants": [],
         "expect": {},
     }
@@ -97,14 +88,11 @@ def slipping(engine, strength):
 
 
 @pytest.mark.parametrize(("engine", "bound"), [(bar, 2e-3), (dem.simulate, 0.01)])
-@pytest.mark.parametrize("a", SHARES)
+@pytest.mark.parametrize("a", [0.5, 0.1, 0.02])
 def test_harmonic_wave(a, engine, bound):
     """T, R and A of Miller (1978) within 0.2 %: 128 quadratic elements and more a wavelength, 25 of
-    the fifth harmonic; within 1 % in as many blocks.
-
-    The reflected wave is what slip changes at the joint; A^2 is the share of the incident energy
-    that friction takes in a cycle.
-    """
+    the fifth harmonic; within 1 % in as many blocks. The reflected wave is what slip changes at the
+    joint; A^2 is the share of the incident energy that friction takes in a cycle."""
     incident, _ = slipping(engine, 1e9)  # at a joint that holds
     shear, friction = slipping(engine, a * 1e5)
     whole = np.mean(incident[CYCLE] ** 2)
@@ -113,7 +101,5 @@ def test_harmonic_wave(a, engine, bound):
     z, area = 2400.0 * 800.0, 0.25
     taken = friction[CYCLE.stop - 1] - friction[CYCLE.start - 1]
     A = np.sqrt(taken / (whole * PERIOD * area / z))
-    exact = slip_coefficients(a)
-    assert exact == pytest.approx(SHARES[a], abs=1e-4)
-    assert pytest.approx(exact, rel=bound) == (T, R, A)
+    assert pytest.approx(slip_coefficients(a), rel=bound) == (T, R, A)
     assert np.abs(shear).max() <= a * 1e5 * (1 + 1e-9)

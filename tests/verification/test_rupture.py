@@ -16,13 +16,12 @@ the strength excess (mu_p - tau / s) / (tau / s - mu_d) is above 1.77 (Andrews, 
 """
 
 from math import log, pi, sqrt
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from jointwave import continuum, dem
-from jointwave.cases.validate import validated
+from jointwave.cases.read import load_tables
 from jointwave.results.dataset import energy_residual
 
 SHEAR, DENSITY, PRESSURE, SHARE = 2e10, 2600.0, 4e7, 0.58
@@ -70,7 +69,7 @@ def fault(half, duration, size=1.0):
             "interval": 5e-5,
         },
     }
-    return validated(tables, Path("rupture.toml"), frozenset())
+    return load_tables(tables)
 
 
 def simulated(engine, *about):

@@ -3,15 +3,14 @@
 Shipped scenes: a shear pulse of 1 MPa meets one joint under 1 MPa, in waves of 32 m.
 """
 
-from functools import cache
-from pathlib import Path
+from functools import cache, partial
 
 import numpy as np
 import pytest
 
 from jointwave import cases, continuum, dem
 from jointwave.cases.histories import Ricker
-from jointwave.cases.validate import validated
+from jointwave.cases.read import load_tables
 from jointwave.compare.exact.joint import sliding_joint
 from jointwave.compare.exact.joint.rate_state_joint import RateJoint, RateStateWave
 from jointwave.compare.exact.joint.slip_phases import Passed, SlipJoint
@@ -21,6 +20,7 @@ from jointwave.results.dataset import energy_residual
 
 WEAKENING, RATED = "slip-weakening", "rate-and-state"
 slow = pytest.mark.slow
+bar = partial(continuum.simulate, model="equivalent", dim=1)
 
 
 def shipped(name, variant="", **changes):
@@ -35,13 +35,9 @@ def shear(result):
 
 
 @cache
-def exact_shear(name, variant=""):
-    """Return that of the exact waves: blocks do not enter."""
-    return shear(sliding_joint.solve(shipped(name, variant)))
-
-
-def bar(scene):
-    return continuum.simulate(scene, "equivalent", dim=1)
+def exact(name, variant=""):
+    """Return the exact waves: blocks do not enter."""
+    return sliding_joint.solve(shipped(name, variant))
 
 
 @pytest.mark.parametrize("name", [WEAKENING, pytest.param(RATED, marks=slow)])
@@ -57,7 +53,7 @@ def test_blocks_and_rock_tend_to_the_exact_joint(name):
         for one in found:
             friction = one["energy"].sel(term="friction").values
             assert np.diff(friction).min() >= -1e-12 * friction[-1]
-        misfits.append([relative_l2(shear(one), exact_shear(name)) for one in found])
+        misfits.append([relative_l2(shear(one), shear(exact(name))) for one in found])
     misfits = np.array(misfits)
     assert (misfits[1:] < 0.6 * misfits[:-1]).all()
     if name == WEAKENING:
@@ -83,16 +79,9 @@ def test_one_joint_in_homogenised_rock(name, variant, scheme, steps):
     """1 % of the exact waveform, explicit and in steps of a share of the period; slow: the schemes
     that the same law has in others."""
     numerics = {"scheme": scheme, "steps_per_period": steps}
-    changes = {f"numerics.continuum.{key}": value for key, value in numerics.items()}
-    found = bar(shipped(name, variant, **changes))
-    assert relative_l2(shear(found), exact_shear(name, variant)) < 0.01
+    found = bar(shipped(name, variant, **{"numerics.continuum": numerics}))
+    assert relative_l2(shear(found), shear(exact(name, variant))) < 0.01
     assert energy_residual(found) < 1e-6
-
-
-@cache
-def lifted():
-    """Return the exact waves of a joint that slip lifts."""
-    return sliding_joint.solve(shipped("dilating-joint"))
 
 
 @pytest.mark.parametrize(
@@ -106,11 +95,11 @@ def lifted():
 def test_a_joint_that_is_lifted_sends_off_pressure(simulate, scheme, bound):
     """Shear and pressure on both sides, in waves of 32 m and 88 m: blocks of 0.25 m, and rock."""
     numerics = {"scheme": scheme, "steps_per_period": 1000}
-    changes = {f"numerics.continuum.{key}": value for key, value in numerics.items()}
-    found, exact = simulate(shipped("dilating-joint", **changes)), lifted()
+    found = simulate(shipped("dilating-joint", **{"numerics.continuum": numerics}))
+    lifted = exact("dilating-joint")
     waves = [("stress", ...), ("shear", (..., 0)), ("velocity", (..., 0)), ("velocity", (..., 1))]
     for name, part in waves:
-        for own, other in zip(found[name].values, exact[name].values, strict=True):
+        for own, other in zip(found[name].values, lifted[name].values, strict=True):
             still = other[part][0]
             assert relative_l2(own[part] - still, other[part] - still) < bound
     assert energy_residual(found) < 1e-6
@@ -168,15 +157,16 @@ def test_one_joint_in_the_plane(engine, rock, bound, law):
     joint = JOINT | (WEAKENS if law == "weakens" else RATE)
     numerics = {"dem": {"block": 0.8}, "continuum": {"size": 2.0, **rock}}
     tables = FAULT | {"joint_sets": [joint, SIDES], "numerics": numerics}
-    found = engine(validated(tables, Path("fault.toml"), frozenset()))
+    found = engine(load_tables(tables))
     t, speed, load = found["time"].values, np.sqrt(2e10 / 2600.0), Ricker(2e6, 0.02)
     z, delay = 2600.0 * speed, 24.0 / speed
     stress, impulse = passed(law, z, float(t[-1]), delay)(t - delay)
     slip = 2 * (load.impulse(t - delay) - impulse) / z
-    for own, exact in (
-        (found["traction"].values[0, :, 1], stress), (found["slip"].values[0], slip)
-    ):  # fmt: skip
-        assert relative_l2(np.sign(own @ exact) * own, exact) < bound
+    for own, known in (
+        (found["traction"][0, :, 1].values, stress),
+        (found["slip"][0].values, slip),
+    ):
+        assert relative_l2(np.sign(own @ known) * own, known) < bound
     assert energy_residual(found) < 1e-6
 
 
@@ -220,7 +210,7 @@ def slider(share):
         "time": {"duration": 4.0},
         "record": {"stress": [0.5], "velocity": [0.25], "interval": 1e-3},
     }
-    return validated(tables, Path("slider.toml"), frozenset())
+    return load_tables(tables)
 
 
 def test_blocks_creep_above_the_critical_stiffness_and_stick_and_slip_below():

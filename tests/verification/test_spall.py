@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from closed_forms.jointed_spall import jointed_spall
-from closed_forms.spall import spall
+from closed_forms.spall import jointed_spall, spall
 from jointwave import cases, continuum
 from jointwave.cases.loads import load_history
 from jointwave.cases.material.calibrate import calibrate
@@ -42,12 +41,9 @@ def first_break(scene, after):
 @pytest.mark.parametrize(("period", "strength"), [(0.02, 5e5), (0.03, 6e5), (0.02, 8e5)])
 def test_a_smooth_pulse_breaks_the_joint_beside_the_bars_place(pillar, period, strength):
     """The exact jointed bar names the joint, and its time to a sample; the homogenised bar's place
-    is within one joint spacing.
-
-    The matched start takes half of the load; two joints can fail in one step. The wavelet is 54 or
-    80 blocks long, so that the dispersion of the jointed rock, (k d)^2 / 24 of the way, is below
-    one joint spacing.
-    """
+    is within one joint spacing. The matched start takes half of the load; two joints can fail in
+    one step. The wavelet is 54 or 80 blocks long, so that the dispersion of the jointed rock, (k
+    d)^2 / 24 of the way, is below one joint spacing."""
     p = calibrate(pillar())
     least = strength**2 / (2 * p.regular_stiffness)
     scene = pillar(
@@ -69,10 +65,9 @@ def test_a_smooth_pulse_breaks_the_joint_beside_the_bars_place(pillar, period, s
 
 def test_a_saw_tooth_breaks_the_jointed_bars_joint():
     """Its front rises within five blocks, and the ripples that jointed rock trails behind it break
-    a joint nearer to the end than the homogenised bar would; the exact jointed bar knows which.
-
-    The ledger closes within 1e-6 of the work, where 1e-4 is promised: a joint that reaches its
-    strength or breaks between two steps costs an energy of second order in the step."""
+    a joint nearer to the end than the homogenised bar would; the exact jointed bar knows which. The
+    ledger closes within 1e-6 of the work, where 1e-4 is promised: a joint that reaches its strength
+    or breaks between two steps costs an energy of second order in the step."""
     keys = {"rock.intact_modulus": 8.64e10, "variants": [], **EXPLICIT}
     scene = cases.load_variant(SHIPPED / "beyond" / "spall.toml", "", keys)
     exact = jointed_spall(scene)

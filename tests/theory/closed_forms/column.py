@@ -27,12 +27,7 @@ def love_rayleigh(poisson: float, wave_number: float, side: float, dim: int = 3)
     return poisson**2 * wave_number**2 * radius / 2
 
 
-def torsion_constant(side: float) -> float:
-    """Return J (m4) of a square of this side (m)."""
-    series = sum(tanh(n * pi / 2) / n**5 for n in range(1, 2 * TERMS, 2))
-    return side**4 / 3 * (1 - 192 / pi**5 * series)
-
-
 def torsion_speed(shear_speed: float) -> float:
     """Return the speed (m/s) of long waves of torsion, 0.9184 times that of shear waves."""
-    return shear_speed * sqrt(6 * torsion_constant(1.0))
+    series = sum(tanh(n * pi / 2) / n**5 for n in range(1, 2 * TERMS, 2))
+    return shear_speed * sqrt(2 * (1 - 192 / pi**5 * series))

@@ -1,4 +1,4 @@
-"""Place and time at which a pulse first breaks a bar with a free end, and the chain.
+"""Place and time at which a pulse first breaks a bar with a free end, jointed rock and the chain.
 
 At the distance x from the free end a pulse f, which entered the start at t = 0, and its reflection
 add up to the tension (Kolsky, Stress Waves in Solids, 1953)
@@ -16,8 +16,11 @@ import numpy as np
 from jointwave.cases.histories import LoadHistory
 from jointwave.cases.loads import late_load
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.properties import Properties
 from jointwave.cases.sampling import sample_times
 from jointwave.cases.schema.scene import Scene
+from jointwave.compare.exact.bar.bars import bar_of
+from jointwave.compare.exact.bar.laplace import bounded
 from jointwave.compare.exact.blocks.pillar import system_of
 from jointwave.compare.exact.blocks.row_of_blocks import contact_forces
 from jointwave.compare.exact.linear import twins
@@ -65,20 +68,30 @@ def spall(
     return found
 
 
-def lattice_spall(scene: Scene) -> Spall | None:
-    """Return the first failure of the scene's rigid-block chain, at one of its joints; its time is
-    that of the last sample before.
+def jointed_spall(scene: Scene) -> Spall | None:
+    """Return the first failure of the scene's deformable rock at one of its joints, to a sample.
 
-    The chain is linear until then, so its exact solution holds; gravity, if any, is static.
+    It is linear until then, so the exact stress at all joints holds.
     """
-    p, model, times = calibrate(scene), system_of(scene), sample_times(scene)
-    if p.tensile_strength is None:
-        raise ValueError("no joint has a tensile strength")
-    states = twins(model.matrix, model.load, late_load(scene), times)[0]
-    pulled = -contact_forces(model, states)[:, 1 : scene.block_count] / p.area - p.tensile_strength
-    broken = (pulled >= 0).any(axis=1)
-    if not broken.any():
+    p, times = calibrate(scene), sample_times(scene)
+    bar, joints = bar_of(scene, resolved=True), p.joint_y.tolist()
+    load, period = late_load(scene, "jointed"), scene.load.time_scale
+    (stress, _, _), _ = bounded(bar, load, times, joints, [], period)
+    return _first(scene, p, -stress.T)
+
+
+def lattice_spall(scene: Scene) -> Spall | None:
+    """Return the same of the scene's rigid-block chain; gravity, if any, is static."""
+    p, model = calibrate(scene), system_of(scene)
+    states = twins(model.matrix, model.load, late_load(scene), sample_times(scene))[0]
+    return _first(scene, p, -contact_forces(model, states)[:, 1 : scene.block_count] / p.area)
+
+
+def _first(scene: Scene, p: Properties, tension: np.ndarray) -> Spall | None:
+    """Return the first sample at which the tension [n, joints] (Pa) of a joint is its strength."""
+    share = tension / p.tensile_strength
+    breaks = np.flatnonzero((share >= 1).any(axis=1))
+    if not breaks.size:
         return None
-    first = int(np.argmax(broken))
-    y = p.joint_y[np.argmax(pulled[first])]
-    return Spall(float(scene.pillar.length - y), float(times[max(first - 1, 0)]))
+    y = p.joint_y[np.argmax(share[breaks[0]])]
+    return Spall(float(scene.pillar.length - y), float(sample_times(scene)[breaks[0]]))

@@ -16,8 +16,3 @@ def transmission(impedance_ratio: float, phase: float) -> float:
     """Return |T| of a layer of Z_2/Z_1 and k_2 h (rad)."""
     contrast = 1 / impedance_ratio - impedance_ratio
     return 1 / sqrt(1 + contrast**2 * sin(phase) ** 2 / 4)
-
-
-def joint(impedance_ratio: float, phase: float) -> float:
-    """Return kappa of the massless joint in place of the layer."""
-    return impedance_ratio / phase
