@@ -189,7 +189,8 @@ class _Trials:
         options |= dict.fromkeys(("ftol", "xtol", "gtol"), TOLERANCE)
         options |= {"nan_policy": "propagate", "max_nfev": MOST * (2 * len(self.keys) + 1)}
         try:
-            found = minimize(self._all_residuals, given, method="least_squares", **options)
+            with np.errstate(invalid="ignore"):  # of lmfit's covariance, in place of `_estimates`
+                found = minimize(self._all_residuals, given, method="least_squares", **options)
         except ValueError:  # no derivative: a neighbour has no solution
             return None
         return found if found.success else None
