@@ -4,9 +4,9 @@ import json
 import os
 import subprocess
 import sys
-from math import sqrt
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -20,13 +20,10 @@ BASE = (SCENE, "--variant", "")
 
 @pytest.fixture
 def facts(jointwave):
-    """Return a function that runs a command with --json and returns what it says."""
     return lambda *arguments: json.loads(jointwave(*arguments, "--json").out)
 
 
 def test_scenes_and_studies_are_listed(jointwave, facts):
-    """Shipped scenes with their variants can be used by the name that the list shows; studies have
-    titles and scenes."""
     scenes = {f["scene"]: f for f in facts("list")}
     assert scenes[SCENE]["variants"] and len(scenes) >= 9
     studies = {one["study"]: one for one in facts("study")}
@@ -75,7 +72,6 @@ def test_run_leaves_out_variants_that_an_engine_cannot_solve(jointwave):
 
 
 def test_explain_says_what_is_left_out_and_why(facts):
-    """Effects, critical steps and exact solutions, with the reason of each no."""
     found = facts("explain", SCENE)
     assert not found["effects"]["dashpots"]["active"]
     assert found["solutions"]["lattice"]["applies"]
@@ -87,7 +83,6 @@ def test_explain_says_what_is_left_out_and_why(facts):
 
 
 def test_explain_names_the_block_that_limits_the_step(pillar, facts):
-    """The thinnest block of a tunnel's rock; none of a pillar whose blocks are alike."""
     said = facts("explain", "rock-mass/tunnel", "--variant", "no slip")
     found = {one["engine"]: one for one in said["limits_the_step"]}
     assert found["dem"]["at"] == pytest.approx([22.2, 14.13], abs=0.01)
@@ -101,14 +96,11 @@ def test_explain_says_what_segments_are_and_transmit(pillar):
     fast = {"y": [25.0, 50.0], "density": 2700.0, "p_speed": 4000.0, "s_speed": 2300.0}
     slow, quick = explanation(pillar(rock__intact_modulus=None, segments=[fast]))["segments"]
     assert slow["has_joints"] and quick["has_joints"]
+    rho, p, s = np.transpose([(2400.0, 2200.0, 800.0), (2700.0, 4000.0, 2300.0)])
     # E = mu (3 lambda + 2 mu) / (lambda + mu), by the squares of the speeds
-    moduli = [
-        rho * s**2 * (3 * p**2 - 4 * s**2) / (p**2 - s**2)
-        for rho, p, s in ((2400.0, 2200.0, 800.0), (2700.0, 4000.0, 2300.0))
-    ]
-    stiffnesses = [one["joint_stiffness"] for one in (slow, quick)]
-    assert stiffnesses == pytest.approx([modulus / 0.5 for modulus in moduli])
-    z, other = (sqrt(rho * E) for rho, E in zip((2400.0, 2700.0), moduli, strict=True))
+    moduli = rho * s**2 * (3 * p**2 - 4 * s**2) / (p**2 - s**2)
+    assert [one["joint_stiffness"] for one in (slow, quick)] == pytest.approx(moduli / 0.5)
+    z, other = np.sqrt(rho * moduli)
     assert quick["transmission"] == pytest.approx(2 * other / (z + other))
 
 
@@ -122,7 +114,6 @@ def test_a_result_holds_what_was_warned_of(jointwave):
 
 
 def test_run_tells_what_broke(jointwave, facts):
-    """How many joints broke and where the pieces fly, in words and as JSON."""
     options = ("run", "beyond/spall", "--out", "out", "--variant", "")
     (fact,) = facts(*options)
     count = len(fact["fragments"]) - 1
@@ -147,7 +138,6 @@ def test_instability_is_caught_with_exit_3_and_old_results_stay(jointwave, caplo
 
 
 def test_compare_writes_figure_curves_and_distances(jointwave):
-    """The files named in the plugin's failure message: every curve, drawn and as numbers."""
     jointwave("compare", *BASE, *SHORT, "--no-spectral", "--out", "out")
     written = [*Path("out").iterdir()]
     assert {path.suffix for path in written} == {".svg", ".pdf", ".png", ".csv", ".nc"}

@@ -16,8 +16,6 @@ OF_SPACE = "jointwave: --explode: is of a scene in space, not of"
 BAD = [
     (("run",), "Missing argument"),
     (("run", "nothing.toml"), "nothing.toml: cannot be read: No such file"),
-    (("run", SCENE, "--set", "pillar.length"), "key=value"),
-    (("run", SCENE, "--set", "pillar.length=-1"), "pillar.length = -1"),
     (("run", SCENE, "--variant", "none"), "variants.name"),
     (("run", SCENE, "--engine", "fem"), "fem"),
     (("run", SCENE, "--model", "jointed"), "--model: jointed: needs --engine continuum\n"),

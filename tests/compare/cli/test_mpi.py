@@ -41,31 +41,24 @@ LOST = (
     *("--set", "time.duration=0.02", "--set", f"{FRACTION}=1.2"),
     *("--set", "numerics.continuum.allow_unstable=true"),
 )
+ABOVE = ("--set", f"{FRACTION}=1.5")
 TINY = ("--set", "pillar.length=1.0", "--set", "record.stress=[0.5]")
+TOO_MANY = "jointwave: mpiexec: -n = 3: is too many for a mesh of so few cells: 2"
 
 #: What all processes are asked, one command after the other; its exit code and words of its line.
 MISTAKES = {
     "a bad value": ((*RUN, "--set", "pillar.length=-1"), 2, "length = -1"),
     "a comparison": (("compare", *SCENE), 2, "mpiexec: jointwave compare runs in one process"),
-    "a step above the critical": (
-        (*RUN, *SHORT, "--set", f"{FRACTION}=1.5"),
-        2,
-        "above the critical step",
-    ),
+    "a step above the critical": ((*RUN, *SHORT, *ABOVE), 2, "above the critical step"),
     "a run that is lost": ((*RUN, *SHORT, *LOST), 3, "the continuum diverged"),
-    "more processes than cells": (
-        (*RUN, *SHORT, *TINY),
-        2,
-        "jointwave: mpiexec: -n = 3: is too many for a mesh of so few cells: 2",
-    ),
+    "more processes than cells": ((*RUN, *SHORT, *TINY), 2, TOO_MANY),
     "a folder that cannot be": (("run", *SCENE, *SHORT), 2, "Not a directory"),
 }
 
 
 @pytest.fixture(scope="module")
 def under_mpi(mpiexec):
-    """Return a function that runs Python with these arguments in some processes, checks its exit
-    status, and gives the finished process."""
+    """Return a function that gives Python as it has run in some processes, to an exit status."""
     launcher, environment = mpiexec
 
     def run(*arguments, code=0, count=3):
@@ -108,7 +101,6 @@ def told(under_mpi, tmp_path_factory):
 
 @pytest.mark.parametrize("name", MISTAKES)
 def test_what_goes_wrong_is_one_line_of_one_process(name, told):
-    """All processes meet the same mistake: one says so, all leave with the same status."""
     (line,), code, _, folder = told[name]
     assert code == MISTAKES[name][1] and MISTAKES[name][2] in line
     left = {path.name for path in folder.rglob("*.nc")} if folder.is_dir() else set()
@@ -166,7 +158,6 @@ def test_an_mpiexec_of_another_mpi_is_refused():
     environment = {**os.environ, "MV2_COMM_WORLD_SIZE": "4"}
     command = [sys.executable, "-m", "jointwave", "run", *SCENE]
     done = subprocess.run(command, capture_output=True, text=True, env=environment)
-    assert done.returncode == 2
-    assert said(done.stderr) == [
-        "jointwave: mpiexec: -n = 4: belongs to another MPI than mpi4py, which sees one process"
-    ]
+    (line,) = said(done.stderr)
+    assert done.returncode == 2 and line.startswith("jointwave: mpiexec: -n = 4: ")
+    assert line.endswith("belongs to another MPI than mpi4py, which sees one process")

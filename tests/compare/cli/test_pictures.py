@@ -17,7 +17,6 @@ SMALL = ("--set", "pillar.length=10", "--set", "record.stress=[5]", "--set", "ti
 
 @pytest.fixture
 def folder(jointwave):
-    """Return a folder with results of both engines."""
     engines = ("--engine", "dem", "--engine", "continuum", "--model", "jointed")
     fields = ("--variant", "", "--set", "record.fields=1e-3", "--out", "short")
     jointwave("run", LAYER, *SMALL, *fields, *engines)
@@ -52,20 +51,12 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder,
     } <= set(words_of("c.svg"))
     assert jointwave("picture", folder).out == "wrote short-ppv.png\n"  # not as its scene
     assert jointwave("picture", f"{folder}/dem.nc", "--map", "speed").out == "wrote dem-speed.png\n"
-    for arguments, said in (
-        (("--variant", "soft layer"), "are of a scene, not of a folder"),
-        (("--map", "heat"), "map = 'heat': must be one of ppv, speed, stress, slip"),
-        (("--map", "speed", "--time", "1"), "time = 1.0: must be from 0 to 0.01 s"),
-        (("--map", "speed", "--time", "nan"), "time = nan: must be from 0 to 0.01 s"),
-    ):
-        done = jointwave("picture", folder, *arguments, code=2)
-        assert said in done.err and done.err.count("\n") == 1 and not done.out
+    done = jointwave("picture", folder, "--variant", "soft layer", code=2)
+    assert "are of a scene, not of a folder" in done.err and not done.out
     stronger = ("--set", "load.amplitude=3e6", "--set", "record.fields=1e-3", "--out", folder)
     jointwave("run", LAYER, *SMALL, "--variant", "", *stronger)
-    said = jointwave("picture", folder, code=2).err
-    assert (
-        said == f"jointwave: {folder}: has results of two scenes, by load: name one of the files\n"
-    )
+    said, why = jointwave("picture", folder, code=2).err, "has results of two scenes, by load"
+    assert said == f"jointwave: {folder}: {why}: name one of the files\n"
     for content in (b"", b"CDF", xr.Dataset({"a": 1.0}).to_netcdf()):
         Path(folder, "dem.nc").write_bytes(content)
         said = jointwave("picture", folder, code=2).err
@@ -73,7 +64,6 @@ def test_results_are_drawn_side_by_side_with_their_difference(jointwave, folder,
 
 
 def test_animate_writes_a_film_of_both_engines(jointwave):
-    """Called as it is asked, else by scene and variant."""
     options = ("--frames", 12, "--seconds", 1.5, "--out", "wave.mp4")
     said = jointwave("animate", SCENE, *SMALL, *options).out
     assert said.startswith("wave.mp4: rigid blocks and jointed rock, displacements × ")

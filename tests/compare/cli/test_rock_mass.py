@@ -50,7 +50,6 @@ def says(one_joint, in_toml, jointwave):
 
 @pytest.fixture
 def explains(says):
-    """Return a function of a scene and options that gives the facts of an explanation."""
     return lambda options: json.loads(says(f"explain {options} --json").out)
 
 

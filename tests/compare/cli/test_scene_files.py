@@ -1,6 +1,7 @@
 """The scene written by `jointwave new`: every key explained, and runnable unchanged."""
 
 import re
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -33,16 +34,15 @@ def choices(template):
 
 @pytest.mark.parametrize("template", MODELS)
 def test_it_meets_its_own_expectations_without_a_warning(template):
-    """Every variant, every pair."""
     (path,) = write_new("mine/first", template=template)
     scenes = cases.load(path)
     assert path.name == "first.toml" and scenes[0].title == "first" and len(scenes) == 2
     for scene in scenes:
         assert warnings(scene) == [] and len(scene.expect) == 2
-        pairs = {tuple(pair.split(" ~ ")): bound for pair, bound in scene.expect.items()}
-        results = {name: solve(name, scene) for name in {name for pair in pairs for name in pair}}
-        for (one, other), bound in pairs.items():
-            assert misfit(results[one], results[other]) <= bound
+        solved = cache(partial(solve, scene=scene))
+        for pair, bound in scene.expect.items():
+            one, other = map(solved, pair.split(" ~ "))
+            assert misfit(one, other) <= bound
 
 
 @pytest.mark.parametrize("template", MODELS)
@@ -65,8 +65,7 @@ CHOICES = {"pillar": 6, "rock-mass": 13}
 @pytest.mark.parametrize(("template", "dependent"), CHOICES.items())
 def test_each_choice_is_understood(template, dependent):
     """One key at a time: the scene has it, or names in one line what else it needs."""
-    refused = []
-    path, lines = Path("x.toml"), list(choices(template))
+    refused, path, lines = [], Path("x.toml"), list(choices(template))
     chosen = [(i, key) for i, (line, key) in enumerate(lines) if key and line.startswith("# ")]
     assert len(chosen) > 15
     for i, key in chosen:
@@ -91,10 +90,11 @@ def test_a_copy_keeps_its_comments_and_the_files_that_it_names():
 
 
 BLAST = "beyond/blast-history"
-TAKEN = [(None, "a.toml"), (BLAST, "a.toml"), (BLAST, "blast-two-delays.csv")]
 
 
-@pytest.mark.parametrize(("source", "taken"), TAKEN)
+@pytest.mark.parametrize(
+    ("source", "taken"), [(None, "a.toml"), (BLAST, "a.toml"), (BLAST, "blast-two-delays.csv")]
+)
 def test_nothing_is_replaced(source, taken):
     """Neither a file nor the target of a link; and nothing is written beside it."""
     Path("own").write_text("mine")

@@ -5,6 +5,7 @@ import pty
 import re
 import subprocess
 import sys
+from contextlib import suppress
 
 import pytest
 
@@ -30,40 +31,32 @@ rich.console.monotonic = lambda: clock[0]
 """ + SLOW.replace("sleep(0.05)", "sleep(0.15); clock[0] += 0.15")
 
 
-def on_terminal(command, **environment):
-    """Return a command's output to a terminal that is its stdout and stderr."""
+def on_terminal(code, **environment):
+    """Return a program's output to a terminal that is its stdout and stderr."""
     ours, theirs = pty.openpty()
     clean = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "FORCE_COLOR")}
     told = {**clean, "TERM": "xterm-256color", "COLUMNS": "120", **environment}
+    command = [sys.executable, "-c", code]
     process = subprocess.Popen(command, stdout=theirs, stderr=theirs, env=told)
     os.close(theirs)
     said = b""
-    while True:
-        try:
-            part = os.read(ours, 65536)
-        except OSError:  # the other end is closed
-            break
-        if not part:
-            break
-        said += part
+    with suppress(OSError):  # the other end is closed
+        while part := os.read(ours, 65536):
+            said += part
     os.close(ours)
     assert process.wait() == 0
     return said.decode()
 
 
-def piped(command, **environment):
+def piped(code, **environment):
     """Return a program that has run with pipes."""
-    told = os.environ | environment
+    command, told = [sys.executable, "-c", code], os.environ | environment
     return subprocess.run(command, capture_output=True, text=True, env=told)
-
-
-def python(code):
-    return [sys.executable, "-c", code]
 
 
 def test_progress_says_what_is_done_and_how_long_it_will_take():
     """Its bar is gone in the end; square brackets in a label are no markup."""
-    said = on_terminal(python(CLOCKED))
+    said = on_terminal(CLOCKED)
     assert "[bold]ten parts" in said and re.search(r"[3-8]0%", said)
     left = [int(s) for s in re.findall(r"0:00:0(\d)\S* \S*left", said)]
     assert left and max(left) in (1, 2) and left == sorted(left, reverse=True)
@@ -73,21 +66,21 @@ def test_progress_says_what_is_done_and_how_long_it_will_take():
 def test_a_pipe_gets_a_line_now_and_then():
     """On standard error only, with the progress so far; none remains after the work has ended, and
     nothing reaches it of what is soon done."""
-    done = piped(python(SLOW + "sleep(0.3)"), JOINTWAVE_PROGRESS="0.1")
+    done = piped(SLOW + "sleep(0.3)", JOINTWAVE_PROGRESS="0.1")
     assert done.stdout == ""
     lines = done.stderr.splitlines()
     said = [re.fullmatch(r"jointwave: \[bold\]ten parts: (\d+)% after \d s", x) for x in lines]
     assert said and all(said)
     shares = [int(one[1]) for one in said]
     assert shares == sorted(shares) and shares[0] < 100
-    done = piped(python(SLOW))
+    done = piped(SLOW)
     assert done.stdout == done.stderr == ""
 
 
 @pytest.mark.parametrize("close", ["sys.stderr.close()", "os.close(2)"])
 def test_a_pipe_that_nobody_reads_does_not_end_the_work(close):
     code = f"import os, sys\n{close}\n{SLOW}print('whole')"
-    assert piped(python(code), JOINTWAVE_PROGRESS="0.1").stdout == "whole\n"
+    assert piped(code, JOINTWAVE_PROGRESS="0.1").stdout == "whole\n"
 
 
 @pytest.mark.parametrize("every", ["often", "-1", "nan", "inf"])
@@ -99,21 +92,19 @@ def test_an_interval_that_is_none_is_one_line(every, jointwave, monkeypatch):
 
 
 def test_colours_are_for_a_terminal_that_wants_them():
-    """Red on a terminal; none with NO_COLOR, none in a pipe."""
-    assert COLOUR.search(on_terminal(python(RED)))
-    assert not COLOUR.search(on_terminal(python(RED), NO_COLOR="1"))
-    done = piped(python(RED))
+    assert COLOUR.search(on_terminal(RED))
+    assert not COLOUR.search(on_terminal(RED, NO_COLOR="1"))
+    done = piped(RED)
     assert (done.stdout, done.stderr) == ("would fail\n", "")
 
 
 def test_a_table_that_is_too_wide_is_turned(capsys, monkeypatch):
     """Where it has few rows: its columns become rows, and nothing of it is wrapped."""
     monkeypatch.setattr(terminal, "PIPE", 30)
-    wide = ["engine", *(f"a number ({unit})" for unit in ("m", "s"))], [["rigid blocks", "1", "2"]]
-    terminal.show_table(*wide)
-    lines = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
-    assert [line[0] for line in lines] == ["engine", "a number (m)", "a number (s)"]
-    terminal.show_table(wide[0], 5 * wide[1])
+    header, row = ["engine", "a number (m)", "a number (s)"], ["rigid blocks", "1", "2"]
+    terminal.show_table(header, [row])
+    assert [x.split("  ")[0] for x in capsys.readouterr().out.splitlines()] == header
+    terminal.show_table(header, 5 * [row])
     assert capsys.readouterr().out.startswith("engine        a number (m)  a number (s)")
 
 
@@ -132,7 +123,7 @@ main()
 
 
 def test_ctrl_c_while_the_program_is_imported_is_one_line():
-    done = piped(python(INTERRUPTED))
+    done = piped(INTERRUPTED)
     assert (done.returncode, done.stdout) == (130, "")
     assert done.stderr == "jointwave: interrupted\n"
 
@@ -145,11 +136,7 @@ class Fore:
         return ""
 
 Fore = Style = Fore()
-
-def init(*args, **more):
-    print("colours")
-
-reinit = deinit = init
+init = reinit = deinit = lambda *args, **more: print("colours")
 """
 
 MESSAGE = """
@@ -169,7 +156,7 @@ def test_messages_of_numba_are_not_coloured(tmp_path):
     """colorama would append an escape sequence to all terminal output, also JSON."""
     (tmp_path / "colorama.py").write_text(COLORAMA)
     path = os.pathsep.join([str(tmp_path), *sys.path])
-    done = piped(python(MESSAGE), PYTHONPATH=path)
+    done = piped(MESSAGE, PYTHONPATH=path)
     assert done.returncode == 0, done.stderr
     assert "colours" not in done.stdout and done.stdout.endswith("a message\n")
 

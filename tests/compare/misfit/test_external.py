@@ -121,11 +121,9 @@ def test_any_netcdf_with_time_and_stress_is_read(label, data, tmp_path, scene):
 
 @pytest.mark.parametrize("ratio", [1.3, 0.7])
 def test_misfit_of_the_exact_curve_is_that_of_linear_interpolation(ratio, scene, tmp_path):
-    """At most h^2 / 8 max |s''| at every time, and h^2: a quarter for half the interval.
-
-    h is the interval of whichever is finer, s'' from second differences of an 8 times finer
-    sampling, which miss h^2 / 64 of it. Sampled coarser than ours, and finer.
-    """
+    """At most h^2 / 8 max |s''| at every time, and h^2: a quarter for half the interval. h is the
+    interval of whichever is finer, s'' from second differences of an 8 times finer sampling, which
+    miss h^2 / 64 of it. Sampled coarser than ours, and finer."""
     misfits = []
     for refine in (1, 2):
         interval = scene.interval / refine
@@ -233,8 +231,6 @@ def test_curves_are_in_table_figure_and_files(scene, tmp_path):
 
 HEAD = "time,stress@20/"
 FAULTS = [
-    (f"{HEAD}0,0/1e-3,nan/2e-3,2/", "line 3: stress@20 = 'nan'.*a number"),
-    (f"{HEAD}0,0/1e-3,1/", "at least 3 samples"),
     ("h,stress@20,v/0,0,0/1,1,1/", "header = 'h, stress@20, v'.*:h=time"),
     ("time,stress/0,0/1,1/2,2/", r"curve\.csv: stress.*stress@20"),
     ("time,stress@20,stress@20/0,0,0/1,1,1/2,2,2/", "stress@20.*once"),

@@ -9,8 +9,7 @@ from jointwave.compare.studies.study import Study
 
 @pytest.fixture
 def command(jointwave, tmp_path, monkeypatch):
-    """Return a function that runs a command in this process and an empty folder, and gives what it
-    said; `code` is what it must end with."""
+    """Return `jointwave`, which runs in an empty folder."""
     monkeypatch.chdir(tmp_path)
     return jointwave
 

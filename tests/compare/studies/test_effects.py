@@ -42,6 +42,7 @@ ROWS, COLUMNS_OF_BLOCKS = ({"name": f"{dip:g}", "dip": dip} | JOINT for dip in (
 STIFF = {"normal_stiffness": 2e10}
 PRESS = {"kind": "pressure", "side": "top", "shape": "ricker", "amplitude": 1e6, "period": 0.004}
 WAVE = {"kind": "P", "direction": [0.0, 1.0], "shape": "step", "amplitude": 1e6}
+SUBJECT = "is the subject of the scene"
 
 
 def law(name):
@@ -118,8 +119,8 @@ def test_an_effect_that_the_scene_needs_stays(pillar):
     shaken = pillar(ends__start="fixed", load=BASE)
     entered = mass(boundaries={"bottom": "quiet"}, waves=[WAVE], loads=[])
     for scene, effect, words in (
-        (pillar(**ACROSS), "spatial motion", "is the subject of the scene"),
-        (mass(), "loads", "is the subject of the scene"),
+        (pillar(**ACROSS), "spatial motion", SUBJECT),
+        (mass(), "loads", SUBJECT),
         (shaken, "fixed ends", r"load\.quantity .*needs ends\.start"),
         (entered, "quiet sides", r"must be 'quiet': waves\[0\] enters there"),
     ):
@@ -192,7 +193,6 @@ def row(effect, misfit, ns, share, steps=1.0, of=("set/one", "One", "", "dem"), 
 
 
 TWO = {"of": ("set/two", "Two", "hard", "dem"), "everything": 20.0}
-SUBJECT = "is the subject of the scene"
 FOUND = pd.DataFrame(
     [
         row("joints that differ", 0.8, -0.1, -0.025),

@@ -23,10 +23,6 @@ def measured(study, number=0):
     return SimpleNamespace(**measure(study.points()[number]))
 
 
-def rows_of(study, folder, pool=None):
-    return [SimpleNamespace(**row) for row in experiment(study, folder).rows(pool)]
-
-
 def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
     """And bounds the finer run's own error: leapfrog of second order, it is a third of that. Errors
     from it are nearly those from the exact solution, a matrix exponential that knows its
@@ -91,11 +87,10 @@ def test_every_point_of_shipped_studies_can_be_run(name):
             if against is None or (key := repr((against, physics))) in held:
                 continue
             held.add(key)
+            name, runs = against, [{}]
             if isinstance(against, FineRun):
-                for changes in (against.changes, against.changes | against.coarser):
-                    assert applies(against.method, study.changed(physics | changes))
-            else:
-                assert applies(against, study.changed(physics))
+                name, runs = against.method, [against.changes, against.changes | against.coarser]
+            assert all(applies(name, study.changed(physics | changes)) for changes in runs)
 
 
 def test_another_scene_curve_or_setting_is_another_point(study):
@@ -109,16 +104,17 @@ def test_points_that_cannot_be_run_say_why(study, tmp_path):
     vary = {STEP: [0.1, 1.5]}
     curve = {"label": "blocks", "method": "dem", "own": "lattice", "vary": vary}
     none = {"label": "series", "method": "series"}
-    good, unstable, wrong = rows_of(study([curve, none]), tmp_path)
-    assert (good.state, unstable.state, wrong.state) == ("done", "failed", "failed")
-    assert "step_fraction" in unstable.message and "not a sine" in wrong.message
-    assert good.numerical < 0.01 and not hasattr(unstable, "numerical")
+    good, unstable, wrong = experiment(study([curve, none]), tmp_path).rows()
+    assert [one["state"] for one in (good, unstable, wrong)] == ["done", "failed", "failed"]
+    assert "step_fraction" in unstable["message"] and "not a sine" in wrong["message"]
+    assert good["numerical"] < 0.01 and "numerical" not in unstable
 
 
 def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
     """A pool that cannot be made is not asked for; a second timed study waits for the first."""
-    rows = rows_of(study(timed=True, repeats=2), tmp_path, lambda work, points: 1 / 0)
-    assert all(row.seconds > 0 and row.spread >= 0 for row in rows)
+    timed = experiment(study(timed=True, repeats=2), tmp_path)
+    rows = timed.rows(lambda work, points: 1 / 0)
+    assert all(row["seconds"] > 0 and row["spread"] >= 0 for row in rows)
     program = "from jointwave.compare.studies.store import alone\nwith alone(): print('in')"
     with alone():
         waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)

@@ -1,6 +1,7 @@
 """Sweeps and ensembles: a folder a point, one table, statistics, failures that stop nobody."""
 
 import json
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -56,19 +57,17 @@ def test_every_point_is_the_run_of_its_scene(command, tmp_path):
     rows = pd.read_csv(tmp_path / "sweep.csv")
     done, failed = (rows[rows.state == state] for state in ("done", "failed"))
     assert len(done) == 2 * 2 * 2 and set(done.quantity) == {"stress", "velocity"}
-    for ratio in (0.02, 0.1):
-        for end in ("free", "quiet"):
-            changes = SHORT | {RATIO: ratio, "ends.end": end}
-            expected = simulate(cases.load_variant(find(SCENE), "", changes))
-            result = xr.load_dataset(tmp_path / f"{RATIO}={ratio},ends.end={end}" / "dem.nc")
-            np.testing.assert_array_equal(result.stress, expected.stress)
-            wave = expected.stress.sel(stress_y=20.0)
-            row = done[(done[RATIO] == ratio) & (done["ends.end"] == end) & (done.y == 20.0)]
-            (row,) = row.itertuples()
-            assert abs(row.peak) == pytest.approx(float(np.abs(wave).max()), rel=1e-8)
-            at = float(wave.sel(time=row.time_of_peak, method="nearest"))
-            assert at == pytest.approx(row.peak)
-            assert (row.engine, row.steps) == ("dem", expected.attrs["steps"])
+    for ratio, end in product((0.02, 0.1), ("free", "quiet")):
+        changes = SHORT | {RATIO: ratio, "ends.end": end}
+        expected = simulate(cases.load_variant(find(SCENE), "", changes))
+        result = xr.load_dataset(tmp_path / f"{RATIO}={ratio},ends.end={end}" / "dem.nc")
+        np.testing.assert_array_equal(result.stress, expected.stress)
+        wave = expected.stress.sel(stress_y=20.0)
+        row = done[(done[RATIO] == ratio) & (done["ends.end"] == end) & (done.y == 20.0)].squeeze()
+        assert abs(row.peak) == pytest.approx(float(np.abs(wave).max()), rel=1e-8)
+        at = wave.sel(time=row.time_of_peak, method="nearest")
+        assert float(at) == pytest.approx(row.peak)
+        assert (row.engine, row.steps) == ("dem", expected.attrs["steps"])
     assert len(failed) == 2 and failed.message.str.contains("must be at least 0").all()
     assert said.count(f"failed: {RATIO}=-1") == 2
     assert (failed[RATIO] == -1).all() and failed.peak.isna().all()
@@ -215,12 +214,6 @@ def test_an_ensemble_shifts_every_seed_there_is():
         cases_of(SCENE, [], "", [], Path("out"), 3)
 
 
-def values(spec):
-    ((key, found),) = axes([f"{RATIO}={spec}"], []).items()
-    assert key == RATIO
-    return found
-
-
 @pytest.mark.parametrize(
     "spec, expected",
     [
@@ -239,8 +232,9 @@ def values(spec):
     ],
 )
 def test_values_are_what_is_written(spec, expected):
-    found = values(spec)
-    assert found == expected and list(map(type, found)) == list(map(type, expected))
+    found = axes([f"{RATIO}={spec}"], [])
+    assert found == {RATIO: expected}
+    assert list(map(type, found[RATIO])) == list(map(type, expected))
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ MASS, PILLAR = "rock-mass/one-joint", "beyond/ricker-one-layer"
 KNOWN = (0.2836, 0.4144, 0.8999, 0.0188)
 
 
-def point_of(solver, incidence, angle, joints):
-    return {"solver": solver, "incidence": incidence, "angle": angle, "joints": joints}
+def point_of(*about):
+    return dict(zip(("solver", "incidence", "angle", "joints"), about, strict=True))
 
 
 def by_hand(impedance, stiffness, omega):
