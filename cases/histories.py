@@ -43,21 +43,29 @@ class LoadHistory:
 
     def value(self, t: np.ndarray) -> np.ndarray:
         """Return the stress (Pa) at times t (s)."""
-        return np.where((t > 0) & (t < self.stop), self.forms.value(t), 0.0)
+        return self.integral(0, t)
 
     def rate(self, t: np.ndarray) -> np.ndarray:
         """Return the rate of the stress (Pa/s) at times t (s)."""
-        return np.where((t > 0) & (t < self.stop), self.forms.rate(t), 0.0)
+        return self.integral(-1, t)
 
     def impulse(self, t: np.ndarray) -> np.ndarray:
         """Return the integral of the stress from minus infinity to t (Pa s)."""
-        integral = self.forms.integral
-        return np.where(t > 0, integral(np.clip(t, 0.0, self.stop)) - integral(0.0), 0.0)
+        return self.integral(1, t)
 
     def double_impulse(self, t: np.ndarray) -> np.ndarray:
         """Return the integral of the impulse from minus infinity to t (Pa s2)."""
-        inside, (*_, integral, twice) = np.clip(t, 0.0, self.stop), self.forms
-        found = twice(inside) - twice(0.0) - integral(0.0) * inside
+        return self.integral(2, t)
+
+    def integral(self, n: int, t: np.ndarray) -> np.ndarray:
+        """Return the n-th integral of the stress from minus infinity to t; n = -1: its rate."""
+        rate, value, once, twice = self.forms
+        if n < 1:
+            return np.where((t > 0) & (t < self.stop), (value if n == 0 else rate)(t), 0.0)
+        inside = np.clip(t, 0.0, self.stop)
+        if n == 1:
+            return np.where(t > 0, once(inside) - once(0.0), 0.0)
+        found = twice(inside) - twice(0.0) - once(0.0) * inside
         if self.stop < inf:
             found += self.impulse(np.array(self.stop)) * np.maximum(t - self.stop, 0.0)
         return np.where(t > 0, found, 0.0)
@@ -191,8 +199,8 @@ class Step(LoadHistory):
             lambda t: A * t**2 / 2,
         )
 
-    def value(self, t):
-        return self.forms.value(t)
+    def integral(self, n, t):
+        return self.forms.value(t) if n == 0 else super().integral(n, t)
 
 
 @dataclass(frozen=True)
@@ -208,28 +216,17 @@ class Recorded(LoadHistory):
     stress: np.ndarray
     timed: bool = True
 
-    def value(self, t):
-        return np.interp(np.asarray(t, dtype=float), self.time, self.stress, left=0.0, right=0.0)
+    def integral(self, n, t):
+        slopes, last = np.diff(self.stress) / np.diff(self.time), self.time[-1]
+        if n < 0:
+            return np.concatenate([[0.0], slopes, [0.0]])[np.searchsorted(self.time, t)]
+        if n == 0:
+            return np.interp(np.asarray(t, dtype=float), self.time, self.stress, 0.0, 0.0)
+        from scipy.interpolate import PPoly  # slow to import
 
-    def impulse(self, t):
-        return self._lines.antiderivative()(np.clip(t, self.time[0], self.time[-1]))
-
-    def double_impulse(self, t):
-        inside, last = np.clip(t, self.time[0], self.time[-1]), self.time[-1]
-        found = self._lines.antiderivative(2)(inside)
-        return found + self.impulse(last) * np.maximum(t - last, 0.0)
-
-    def rate(self, t):
-        slopes = np.concatenate([[0.0], np.diff(self.stress) / np.diff(self.time), [0.0]])
-        return slopes[np.searchsorted(self.time, t)]
-
-    @property
-    def _lines(self) -> Any:
-        """The segments between samples as scipy's piecewise polynomial."""
-        from scipy.interpolate import PPoly
-
-        slopes = np.diff(self.stress) / np.diff(self.time)
-        return PPoly([slopes, self.stress[:-1]], self.time)
+        lines = PPoly([slopes, self.stress[:-1]], self.time)
+        found = lines.antiderivative(n)(np.clip(t, self.time[0], last))
+        return found + self.impulse(last) * np.maximum(t - last, 0.0) if n == 2 else found
 
     @property
     def end(self):
@@ -246,14 +243,8 @@ class Integrated(LoadHistory):
 
     history: LoadHistory
 
-    def value(self, t):
-        return self.history.impulse(t)
-
-    def impulse(self, t):
-        return self.history.double_impulse(t)
-
-    def rate(self, t):
-        return self.history.value(t)
+    def integral(self, n, t):
+        return self.history.integral(n + 1, t)
 
     @property
     def end(self):
@@ -271,17 +262,8 @@ class Late(LoadHistory):
     history: LoadHistory
     by: float
 
-    def value(self, t):
-        return self.history.value(np.subtract(t, self.by))
-
-    def impulse(self, t):
-        return self.history.impulse(np.subtract(t, self.by))
-
-    def double_impulse(self, t):
-        return self.history.double_impulse(np.subtract(t, self.by))
-
-    def rate(self, t):
-        return self.history.rate(np.subtract(t, self.by))
+    def integral(self, n, t):
+        return self.history.integral(n, np.subtract(t, self.by))
 
     @property
     def end(self):

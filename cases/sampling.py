@@ -7,6 +7,7 @@ import numpy as np
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.schema.pulse import shortest_period
 
 MOST_STEPS = 1e12  # some five hours for a hundred rigid blocks; more is taken for a mistake
 
@@ -36,6 +37,12 @@ def sample_times(scene: AnyScene) -> np.ndarray:
     """Return the sample times of a scene [n], s."""
     count = int(scene.time.duration / scene.interval + 1e-9) + 1
     return scene.interval * np.arange(count)
+
+
+def resolved_period(scene: AnyScene) -> float:
+    """Return the period that elements and steps resolve, s: the shortest of the scene's pulses, or
+    a tenth of its duration."""
+    return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def clock(

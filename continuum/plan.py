@@ -12,9 +12,9 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
 from jointwave.cases.run_memory import load_bytes, refuse_beyond_memory, waveform_bytes
-from jointwave.cases.sampling import MOST_STEPS, Clock, clock, sample_times
+from jointwave.cases.sampling import MOST_STEPS, Clock, clock, resolved_period, sample_times
 from jointwave.cases.scene_type import AnyScene
-from jointwave.continuum.mesh.size import of_coarse_cells, resolved_period
+from jointwave.continuum.mesh.size import of_coarse_cells
 from jointwave.continuum.problem import problem_of
 from jointwave.continuum.scene import SceneBody, body_of
 from jointwave.continuum.space import compat

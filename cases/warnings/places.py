@@ -58,7 +58,7 @@ def _joint_places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndar
 
 def _of_distances(scene: RockMass) -> Iterator[str]:
     """Warn of spacings larger than the domain, and of joint receivers far from any joint."""
-    corners, sets, dim = np.array(scene.domain.corners), scene.joint_sets, scene.domain.dimension
+    corners, sets = np.array(scene.domain.corners), scene.joint_sets
     for i, one in enumerate(sets):
         extent = float(np.ptp(corners @ one.normal))
         if one.spacing is not None and one.spacing > extent and not scene.domain.file_key:
@@ -69,7 +69,7 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
     known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
     if not known or scene.domain.file_key:
         return  # the places of joints are known only after cutting
-    places = np.array(scene.record.joints).reshape(-1, dim)
+    _, places = scene.receivers
     away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (

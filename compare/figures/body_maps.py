@@ -12,7 +12,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
-from jointwave.compare.engines import names, solver
+from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation import snapshots
 from jointwave.compare.figures.animation.bodies import Body, body_of
 from jointwave.compare.figures.animation.snapshots import Quantity
@@ -77,7 +77,7 @@ def maps_of(
         why = "is of one instant, ppv the largest of all: choose speed, stress or slip"
         raise SceneError(scene.title, "time", time, why)
     engines, variants = ([str(one.attrs[key]) for one in results] for key in ("engine", "variant"))
-    called = [solver(name).label if name in names() else name for name in engines]
+    called = list(map(label_of, engines))
     for more in (variants, [str(k + 1) for k in range(len(called))]):
         if len(set(called)) < len(called):
             called = [", ".join(filter(None, both)) for both in zip(called, more, strict=True)]

@@ -7,9 +7,8 @@ import xarray as xr
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.material.effective_medium import slowest
-from jointwave.cases.sampling import sample_times
+from jointwave.cases.sampling import resolved_period, sample_times
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.validate import checked
 from jointwave.compare.engines import ENGINES, applies, solve, solver
 from jointwave.compare.runs import timings
@@ -61,7 +60,7 @@ class Elements(NamedTuple):
         """The keys of the engine's table, with the step."""
         dt = self.scene.interval / self.per_sample
         if self.run.scheme == "implicit":
-            key, value = "steps_per_period", period_of(self.scene) / dt * (1 - 1e-6)
+            key, value = "steps_per_period", resolved_period(self.scene) / dt * (1 - 1e-6)
         else:
             key, value = "step_fraction", dt / self.run.critical * (1 + 1e-6)
         return self.changes | {key: float(f"{value:.7g}")}
@@ -140,12 +139,7 @@ def halved(changes: dict[str, Any]) -> dict[str, Any]:
 
 def _part(scene: AnyScene, count: int) -> float:
     """Return the shortest wavelength in a rock mass divided by `count`, m."""
-    return float(f"{slowest(scene) * period_of(scene) / count:.3g}")  # type: ignore[arg-type]
-
-
-def period_of(scene: AnyScene) -> float:
-    """Return the shortest period of a scene's pulses, s; without pulses a tenth of its duration."""
-    return shortest_period(scene.pulses) or scene.time.duration / 10
+    return float(f"{slowest(scene) * resolved_period(scene) / count:.3g}")  # type: ignore[arg-type]
 
 
 def plain(scene: AnyScene) -> AnyScene:

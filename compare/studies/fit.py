@@ -16,6 +16,7 @@ from scipy.interpolate import CubicSpline
 from scipy.stats import t as student
 
 from jointwave.cases.errors import SceneError, StoppedError, UnstableError, require
+from jointwave.cases.sampling import resolved_period
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, Progress, applies, solve
 from jointwave.compare.exact.blocks import row_of_blocks
@@ -24,7 +25,6 @@ from jointwave.compare.misfit.external import READ_CURVES, Curves
 from jointwave.compare.misfit.metrics import rms
 from jointwave.compare.scenes import AnySource, load
 from jointwave.compare.solvers.dem import DEM
-from jointwave.compare.studies.elements import period_of
 from jointwave.compare.studies.fit_keys import CLOCK, ORIGIN, FreeKey, changed, free_keys
 from jointwave.compare.studies.forecast import Run
 
@@ -154,7 +154,7 @@ class _Trials:
         interval = scene.interval / (FINER if shift is not None else 1)
         record = {"interval": interval, "energy": False, "fields": None}
         end = scene.time.duration
-        longer = {"duration": end + (0.0 if shift is None else period_of(scene))}
+        longer = {"duration": end + (0.0 if shift is None else resolved_period(scene))}
         tables: dict[str, Any] = {"record": scene.record.model_copy(update=record), "expect": {}}
         tables["time"] = scene.time.model_copy(update=longer)
         self.scene = scene.model_copy(update=tables)
@@ -225,7 +225,7 @@ class _Trials:
 def _clock(clock: FreeKey, scene: AnyScene, solver: str, curve: Curves) -> FreeKey:
     """Return the clock with its start (if not given, the shift that best correlates a file with the
     solution) and bounds at most one period of the load away."""
-    start, reach = clock.start, period_of(scene)
+    start, reach = clock.start, resolved_period(scene)
     if isnan(start):
         found = align_curve(curve, scene, {solver: solve(solver, scene)}, align=True).shift
         start = found.seconds if found else 0.0

@@ -11,8 +11,8 @@ from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.effective_medium import slowest
 from jointwave.cases.run_memory import refuse_beyond_memory, snapshot_bytes
+from jointwave.cases.sampling import resolved_period
 from jointwave.cases.scene_type import AnyScene
-from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.warnings.sources import of_resolution
@@ -50,11 +50,6 @@ def elements_along(scene: Scene, model: str) -> np.ndarray:
         element = sqrt(modulus / one.density) * travel * resolved_period(scene)
         counts.append(given or max(1, ceil(one.spacing / element * (1 - 1e-9))))
     return np.array(counts)
-
-
-def resolved_period(scene: AnyScene) -> float:
-    """Return the period (s) that elements resolve: the shortest, or a tenth of the duration."""
-    return shortest_period(scene.pulses) or scene.time.duration / 10
 
 
 def refuse_large_mesh(

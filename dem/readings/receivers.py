@@ -64,11 +64,7 @@ def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndar
 
     faces : all contacts, those between blocks first. onto : matrix of `boundaries.freedoms`.
     """
-    sets, dim = len(scene.joint_sets), blocks.body.dim
-    points, joints = (
-        np.array(places, dtype=float).reshape(-1, dim)
-        for places in (scene.record.points, scene.record.joints)
-    )
+    sets, (points, joints) = len(scene.joint_sets), scene.receivers
     at_points = stencils_at(scene, blocks, points)
     read = {one.receiver for one in at_points}
     if lost := [k for k in range(len(points)) if k not in read]:

@@ -146,9 +146,7 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity, displacement and stress at the points of a scene."""
-    times, points = sample_times(scene), np.array(scene.record.points)
-    points = points.reshape(-1, scene.domain.dimension)
-    field = medium_field(scene)
+    times, points, field = sample_times(scene), scene.receivers[0], medium_field(scene)
     velocity, stress = field(points, times)
     by_integral = (replace(wave, pulse=Integrated(wave.pulse)) for wave in field.waves)
     moved, _ = MediumField(tuple(by_integral))(points, times)
