@@ -17,14 +17,8 @@ from jointwave.cases.schema.tables import PAIRS, check_given_once
 #: Forces that depend on velocity or history, which exclude the backward drifts of PEFRL, and motion
 #: that only leapfrog supports.
 BEYOND = (
-    "dashpots",
-    "mass damping",
-    "local damping",
-    "softening",
-    "quiet ends",
-    "matched ends",
-    "shaken base",
-    "spatial motion",
+    *("dashpots", "mass damping", "local damping", "softening"),
+    *("quiet ends", "matched ends", "shaken base", "spatial motion"),
 )
 #: Joint keys that a layer meshed as rock cannot have: its shear stiffness is half of K_n.
 OF_JOINTS = ["shear_stiffness", "tension", "friction_angle", "cohesion"]
@@ -34,19 +28,8 @@ OF_JOINTS += [part.keys[0] for part in PARTS]
 def rules(scene: Scene) -> list[Iterator[Wrong]]:
     """Return the rules for a pillar whose tables are each valid."""
     every = (
-        _of_segments,
-        _of_places,
-        _of_layers,
-        _of_receivers,
-        _of_rock,
-        _of_lever,
-        _of_load,
-        _of_support,
-        _of_damping,
-        _of_strength,
-        _of_fracture,
-        _of_discretisation,
-        _of_scheme,
+        *(_of_segments, _of_places, _of_layers, _of_receivers, _of_rock, _of_lever, _of_load),
+        *(_of_support, _of_damping, _of_strength, _of_fracture, _of_discretisation, _of_scheme),
     )
     return [rule(scene) for rule in every]
 

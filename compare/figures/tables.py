@@ -43,12 +43,8 @@ SHOWN |= {"envelope misfit (%)": 100, "phase misfit (%)": 100}
 MANY = 8  # columns; a wider table is transposed
 NAME = "comparison"  # of the files of a comparison
 READINGS = (
-    "peak velocity (m/s)",
-    "Arias intensity (m/s)",
-    "spectral acceleration (m/s2)",
-    "at period (s)",
-    "speed (m/s)",
-    "apparent Q",
+    *("peak velocity (m/s)", "Arias intensity (m/s)", "spectral acceleration (m/s2)"),
+    *("at period (s)", "speed (m/s)", "apparent Q"),
 )
 
 
