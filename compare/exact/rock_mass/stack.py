@@ -144,10 +144,16 @@ def scatters(scene: RockMass, leaves: bool = True) -> Answer:
 
 def _decays(scene: RockMass, wave: Wave) -> bool:
     """Return whether a wave scattered at parallel boundaries is evanescent in some layer."""
-    incident, n = plane_wave(scene, wave), normals_of(scene)[0]
-    across = float(incident.direction @ n)
-    slowness = np.linalg.norm(incident.direction - across * n) / incident.speed
-    return any(slowness * elastic_rock(one).p_speed >= 1 for one in rocks_of(scene))
+    rocks = [elastic_rock(one) for one in rocks_of(scene)]
+    return _slownesses(plane_wave(scene, wave), normals_of(scene)[0], rocks).min() <= 0
+
+
+def _slownesses(wave: PlaneWave, n: np.ndarray, rocks: list[ElasticRock]) -> np.ndarray:
+    """Return the slownesses across the joints of all scattered waves in each rock, s/m [rocks,
+    kinds], 0 where these are evanescent. SH waves, which move along the joints, scatter no P."""
+    p = float(np.linalg.norm(wave.direction - (wave.direction @ n) * n)) / wave.speed
+    first = int(abs(wave.polarisation @ n) <= FAINT)
+    return np.array([slownesses_across(one, p).real[first:] for one in rocks])
 
 
 def begins_before(scene: RockMass, stack: JointStack) -> Answer:
@@ -173,8 +179,7 @@ def first_scattered(stack: JointStack, wave: PlaneWave) -> float:
     n = stack.normal if wave.direction @ stack.normal > 0 else -stack.normal
     across = float(wave.direction @ n)
     along = (wave.direction - across * n) / wave.speed
-    p, q = float(np.linalg.norm(along)), across / wave.speed
-    least = min(slownesses_across(one, p).real.min() for one in stack.rocks)
+    q, least = across / wave.speed, _slownesses(wave, n, stack.rocks).min()
     places = stack.blocks.body.vertices - wave.through
     first = ((stack.offsets * (n @ stack.normal)) - wave.through @ n).min()
     return float((places @ along + q * first + least * np.abs(places @ n - first)).min())

@@ -7,6 +7,7 @@ import pytest
 
 from closed_forms.one_joint import relaxed_sine
 from jointwave.cases.errors import SceneError
+from jointwave.cases.incident import plane_wave
 from jointwave.compare.engines import applies, solve
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.results.stress import tensors
@@ -169,7 +170,8 @@ def test_a_free_face_along_the_joints_sends_waves_back(rock_mass, joint, wave, k
 
 
 def test_why_waves_do_not_enter_regions_is_said(rock_mass, wave):
-    """Soft rock above sends S waves down at 25 degrees, from which P waves in the rock decay."""
+    """Soft rock above sends S waves down at 25 degrees, from which P waves in the rock decay, unless
+    particles move along the boundary."""
     down = {"direction": [0.3, 0.3, -(0.82**0.5)], "polarisation": [0.0, 0.0, 1.0]}
     changes = {
         "domain": {"size": [60.0, 60.0, 30.0]},
@@ -181,3 +183,12 @@ def test_why_waves_do_not_enter_regions_is_said(rock_mass, wave):
     }
     with pytest.raises(SceneError, match=r"regions, where .* has an evanescent wave in a region"):
         field_of(rock_mass(**changes))
+    # SH waves scatter no P: 2 Z cos / (Z cos + Z' cos') of their velocity is transmitted.
+    changes["waves"][0] |= {"polarisation": [0.5**0.5, -(0.5**0.5), 0.0]}
+    scene, times = rock_mass(**changes), np.linspace(0, 0.03, 3001)
+    found = field_of(scene)(np.array([[30.0, 30.0, 10.0]]), times).velocity[0]
+    squares = np.array([2e10, 5e10]) / 2.5 / 2500
+    slow, fast = 2500 * np.sqrt(squares * (1 - 0.18 * squares / squares[0]))  # Z cos
+    sent = plane_wave(scene, scene.waves[0]).pulse.value(times)
+    share = np.linalg.norm(found, axis=0).max() / np.abs(sent).max()
+    assert share == pytest.approx(2 * slow / (slow + fast), rel=1e-3)
