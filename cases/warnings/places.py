@@ -57,7 +57,8 @@ def _joint_places(scene: RockMass, one: JointSet, normal: np.ndarray) -> np.ndar
 
 
 def _of_distances(scene: RockMass) -> Iterator[str]:
-    """Warn of spacings larger than the domain, and of joint receivers far from any joint."""
+    """Warn of spacings larger than the domain, and of joint receivers far from any joint, or where
+    several contacts meet."""
     corners, sets = np.array(scene.domain.corners), scene.joint_sets
     for i, one in enumerate(sets):
         extent = float(np.ptp(corners @ one.normal))
@@ -70,7 +71,14 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
     if not known or scene.domain.file_key:
         return  # the places of joints are known only after cutting
     _, places = scene.receivers
-    away = np.min([_away(scene, one, places) for one in sets], axis=0, initial=np.inf)
+    each = np.array([_away(scene, one, places) for one in sets])
+    away, on = each.min(axis=0), each <= COINCIDENT * scene.reach
+    for k in np.flatnonzero(on.sum(axis=0) > 1):
+        yield (
+            f"record.joints[{k}] = {placed(places[k])} lies where joints cross: it records one of "
+            f"the contacts that meet there, of joint_sets[{on[:, k].argmax()}]; move it off the "
+            "crossing"
+        )
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (
             f"record.joints[{k}] = {placed(places[k])} is {away[k]:.3g} m from the nearest joint, "

@@ -102,6 +102,13 @@ def test_points_where_the_stress_of_triangles_does_not_converge_are_named(mass):
     assert [one for one in said(**along) if "weld" in one] == []
 
 
+def test_joint_receivers_where_joints_cross_are_named(mass):
+    """They read one of four contacts; a metre further on one of two joints, they read it alone."""
+    found = warnings(mass(joint_sets=SETS, record__joints=[[4.0, 6.0], [4.0, 7.0]]))
+    (line,) = (one for one in found if "cross" in one)
+    assert line.startswith("record.joints[0] = [4, 6]") and "joint_sets[0]" in line
+
+
 def test_gravity_that_acts_suddenly_reaches_everything(mass):
     assert warnings(mass(time__duration=0.008, gravity={"static": False})) == []
 
