@@ -38,12 +38,6 @@ def active_effects(scene: AnyScene) -> list[str]:
     return [effect.name for effect in effects(scene) if effect.active]
 
 
-def bends(scene: Scene) -> bool:
-    """Return whether a load or gravity bends a pillar whose blocks may rotate."""
-    twists = scene.load.arm is not None and not scene.load.is_across and scene.gravity is None
-    return scene.is_spatial and scene.motion.rotation != "none" and not twists
-
-
 def _of_column(scene: Scene) -> Iterator[Called]:
     p, laws, random = calibrate(scene), [scene.joints, *scene.layers], scene.scatter
     source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"

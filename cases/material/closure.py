@@ -80,10 +80,10 @@ def _peak(pulse: Pulse, duration: float) -> float:
     return float(np.abs(history.value(np.append(times, history.breaks))).max())
 
 
-def _stress_of(pulse: Any, scene: AnyScene) -> float:
+def _stress_of(pulse: Any, scene: Any) -> float:
     """Return the stress in rock per unit of a pulse: for a velocity the impedance, for a force one
     over the least joint spacing; at a pillar's start, at the edges of the section."""
-    if scene.is_column:
+    if pulse.kind == "load":
         if pulse.is_motion:
             p = calibrate(scene).at_start
             return sqrt((p.intact_modulus or p.modulus) * p.density)

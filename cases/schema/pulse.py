@@ -121,7 +121,7 @@ class Load(Pulse):
     is a pure couple A p arm about `direction` instead.
     """
 
-    kind: ClassVar[str] = "end"
+    kind: ClassVar[str] = "load"
     side: ClassVar[str] = "start"  #: that it acts on
     direction: Direction = Field(default=[0, 1, 0])  #: x, y, z
     at: Offset = Field(default=[0.0, 0.0])  #: m, x and z from the centre

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from math import pi
 from typing import Any
 
-from jointwave.cases.effects import bends
 from jointwave.cases.loads import LEAST_BLOCKS, shortest_wave
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.closure import stresses
@@ -32,7 +31,8 @@ def met(scene: Scene) -> dict[str, Any]:
         for y in getattr(scene.record, key)
     )
     breaks = any(one.tensile_strength is not None for one in (scene.joints, *scene.layers))
-    opens = bends(scene) and (breaks or not p.tension.all())
+    bends = scene.is_spatial and scene.rotation != "none" and not (twist and scene.gravity is None)
+    opens = bends and (breaks or not p.tension.all())
     ends, added = zip(scene.ends, (p.at_start, p.at_end), strict=True), stresses(scene)[1]
     return dict(
         crossings=p.bar_speed / scene.pillar.length,

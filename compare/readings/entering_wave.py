@@ -64,9 +64,9 @@ def _of_waves(scene: Any) -> Iterator[EnteringWave]:
             yield _wave(name, pulse, 1.0, density, speed, scene.time.duration)
 
 
-def _of_load(scene: AnyScene, key: str, load: Any) -> Iterator[EnteringWave]:
+def _of_load(scene: Any, key: str, load: Any) -> Iterator[EnteringWave]:
     """Yield the waves of a load along and across the normal of the first face that it acts on."""
-    if scene.is_column:
+    if load.kind == "load":
         p, out, held = calibrate(scene).at_start, np.array([0.0, -1.0, 0.0]), scene.ends.start
         p = p.at_rest
         density, dashpot = p.density, np.diag([p.shear_impedance, p.impedance, p.shear_impedance])

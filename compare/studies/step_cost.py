@@ -16,6 +16,15 @@ SCENES = Path(__file__).parent / "scenes"
 UNIT_STEPS = 1_000_000  # steps times blocks or freedoms of a timed run, about
 REPEATS = 5
 BLOCKS = 1000  # at most, in the scene with every effect
+#: The scene of each kind with every effect, the key of its size, and this for a number of blocks.
+EVERY_EFFECT = {
+    "pillar": ("every-effect.toml", "pillar.length", lambda count: 0.5 * count),
+    "rock mass": (
+        "every-effect-in-plane.toml",
+        "domain.size",
+        lambda count: 2 * [float(max(2, int(count**0.5)))],
+    ),
+}
 
 
 class StepCost(NamedTuple):
@@ -66,15 +75,9 @@ def shortened(
 def with_every_effect(scene: AnyScene) -> AnyScene:
     """Return a scene of the same kind with every effect and about as many rigid blocks, since the
     fixed cost of a step matters if there are few."""
-    if scene.is_column:
-        count = min(scene.block_count, BLOCKS)
-        return cases.load_variant(SCENES / "every-effect.toml", "", {"pillar.length": 0.5 * count})
-    dem = solver(DEM.name)
+    dem, (file, key, size) = solver(DEM.name), EVERY_EFFECT[scene.kind]
     blocks = dem.units(scene, dem.prepare(scene).freedoms)
-    side = float(max(2, int(min(blocks, BLOCKS) ** 0.5)))
-    return cases.load_variant(
-        SCENES / "every-effect-in-plane.toml", "", {"domain.size": [side, side]}
-    )
+    return cases.load_variant(SCENES / file, "", {key: size(min(blocks, BLOCKS))})
 
 
 def cost_of_every_effect(scene: AnyScene) -> StepCost:

@@ -107,7 +107,7 @@ def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
     """Return the seeds of a scene's member `number` (from 1) by key; none without random joints."""
     scatter = getattr(scene, "scatter", None)
     found = {} if scatter is None else {"scatter.seed": scatter.seed}
-    for i, one in enumerate(getattr(scene, "joint_sets", [])):
+    for i, one in enumerate(scene.joint_sets):
         if one.seed is not None:
             found[f"joint_sets.{i}.seed"] = one.seed
     return {key: seed + number - 1 for key, seed in found.items()}

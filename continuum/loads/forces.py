@@ -67,10 +67,10 @@ def released(scene: AnyScene, body: Body) -> np.ndarray | None:
 
 def pushes(scene: Any, body: Body, model: str) -> list[Push]:
     """Return the loads of a scene that are forces; model : "jointed" or "equivalent"."""
-    of_kind: Any = {"pressure": _pressure, "force": _force, "base": _base, "end": end_force}
+    of_kind: Any = {"pressure": _pressure, "force": _force, "base": _base, "load": end_force}
 
     def history(load: Any) -> LoadHistory:
-        return late_load(scene, model) if load.kind == "end" else velocity_of(load, load.amplitude)
+        return late_load(scene, model) if load.kind == "load" else velocity_of(load, load.amplitude)
 
     return [Push(of_kind[one.kind](scene, body, one), history(one)) for one in scene.pushes]
 

@@ -146,19 +146,24 @@ def settings_for(
 ) -> ViewSettings:
     """Return the view settings for snapshots by engine.
 
-    scale, quantity : of displacements and colours; None: chosen here. A pillar is turned so that
-    its transverse motion is mostly upwards; a rock mass in space is seen from the south.
+    scale, quantity : of displacements and colours; None: chosen here. A thin pillar is drawn
+    thicker, and turned so that its transverse motion is mostly upwards; a rock mass in space is
+    seen from the south.
     """
-    up, stretch = Z if scene.in_space else Y, 1.0
-    if scene.is_column:  # a thin one is drawn thicker
-        stretch = max(1.0, THIN * scene.pillar.length / scene.pillar.side)
-    largest = min(_largest_scale(scene, s, stretch) for s in found.values())
+    view = ViewSettings(Z if scene.in_space else Y, 1.0, 1.0, quantity or SPEED)
+    if scene.is_column:
+        view = _of_pillar(scene, found, quantity)
+    largest = min(_largest_scale(scene, s, view.stretch) for s in found.values())
     steps = 10.0 ** floor(log10(largest)) * np.array([1, 2, 5])  # rounded down to one of them
     rounded = float(steps[steps <= largest * (1 + 1e-12)].max())
-    view = ViewSettings(up, scale or max(1.0, rounded), stretch, quantity or SPEED)
-    if not scene.is_column:
-        return view
-    across = next(iter(found.values())).displacement[..., [0, 2]].reshape(-1, 2)
+    return view._replace(scale=scale or max(1.0, rounded))
+
+
+def _of_pillar(scene: Any, found: dict[str, Snapshots], quantity: Quantity | None) -> ViewSettings:
+    pillar, across = (
+        scene.pillar,
+        next(iter(found.values())).displacement[..., [0, 2]].reshape(-1, 2),
+    )
     squares, axes = np.linalg.eigh(across.T @ across)
     x, z = axes[:, 1] if squares[1] > DEGENERATE * squares[0] else (1.0, 0.0)  # else x
     up, plane = np.array([x, 0.0, z]) * np.sign(x + z or 1.0), calibrate(scene).impedance
@@ -167,7 +172,7 @@ def settings_for(
         for s in found.values()
     )
     ours = quantity or (VELOCITY if silent else STRESS)
-    return view._replace(up=up, right=Y, quantity=ours, side=scene.pillar.side)
+    return ViewSettings(up, 1.0, max(1.0, THIN * pillar.length / pillar.side), ours, Y, pillar.side)
 
 
 def _largest_scale(scene: AnyScene, s: Snapshots, stretch: float) -> float:

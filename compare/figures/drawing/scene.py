@@ -95,8 +95,7 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
     unit = unit_for(si, 1.001 * float(np.abs(values).max()))
     ax.axhline(0, color="#bbbbbb", linewidth=0.6)
     ax.plot(1e3 * time, values / unit.size, color=LOAD, linewidth=1.3)
-    kind = getattr(pulse, "kind", "load")
-    words = f"{kind} wave" if kind in ("P", "S") else kind
+    words = f"{pulse.kind} wave" if pulse.kind in ("P", "S") else pulse.kind
     title = fill(f"{words}, {pulse.shape} ({unit.name})", LETTERS)
     ax.set(xlabel="time (ms)", title=title, anchor="SW", box_aspect=0.6)
 
@@ -104,10 +103,9 @@ def _draw_pulse(ax: Axes, scene: AnyScene) -> None:
 def pulse_curve(pulse: Pulse, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Return times, s, and the load or wave, SI, from its start to shortly after its end.
 
-    duration : of the scene, s. An extreme load is scaled, see `cases.loads.load_history`.
+    duration : of the scene, s.
     """
-    scale = getattr(pulse, "scale", 1.0)
-    history = history_of(pulse, pulse.amplitude / scale)
+    history = history_of(pulse, pulse.amplitude)
     end = min(duration, 1.25 * history.end or duration)
     time = np.linspace(0, end, SAMPLES)
-    return time, scale * np.asarray(history.value(time))
+    return time, np.asarray(history.value(time))
