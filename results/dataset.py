@@ -114,10 +114,8 @@ def dataset(
 def _receivers(scene: AnyScene) -> Coordinates:
     """Return the coordinates of the receivers."""
     found: Coordinates = {}
-    for key, name in RECEIVERS_OF.items():
-        if (places := getattr(scene.record, key, None)) is None:
-            continue
-        at = np.array(places, dtype=float).reshape(-1, len(scene.axes))
+    for key, at in scene.places.items():
+        name = RECEIVERS_OF[key]
         found[name] = (name,), np.arange(len(at), dtype=np.int32)  # unless places identify them
         found |= {x: ((name,), of) for x, of in zip(RECEIVERS[name], at.T, strict=False)}
     return found

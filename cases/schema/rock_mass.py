@@ -225,15 +225,6 @@ class RockMass(SceneBase):
         return self.domain.mesh_path
 
     @property
-    def receivers(self) -> tuple[np.ndarray, np.ndarray]:
-        """The places of points and of receivers on joints, float arrays [m, d], m."""
-        points, joints = (
-            np.array(places, dtype=float).reshape(-1, self.domain.dimension)
-            for places in (self.record.points, self.record.joints)
-        )
-        return points, joints
-
-    @property
     def reach(self) -> float:
         """The diagonal of the domain's bounding box, m."""
         return float(np.linalg.norm(self.domain.extent))

@@ -7,6 +7,7 @@ of Guo & Li (2002), Chin. J. Rock Mech. Eng. 21(8), 1124-1129.
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import PrivateAttr
 
 from jointwave.cases.schema import tables
@@ -110,6 +111,13 @@ class SceneBase(Table):
     def shakes(self: Any, load: Any) -> bool:
         """Return whether a load is the motion of a fixed side."""
         return load.is_motion and getattr(self.boundaries, load.side or "", None) == "fixed"
+
+    @property
+    def places(self: Any) -> dict[str, np.ndarray]:
+        """The receivers [n, axes] by key of [record], m."""
+        every = {key: places for key, places in self.record if isinstance(places, list)}
+        shape = -1, len(self.axes)
+        return {key: np.array(at, dtype=float).reshape(shape) for key, at in every.items()}
 
     @property
     def interval(self: Any) -> float:

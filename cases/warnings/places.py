@@ -70,7 +70,7 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
     known = bool(sets) and not any(one.scatter or one.ends_at or one.regions for one in sets)
     if not known or scene.domain.file_key:
         return  # the places of joints are known only after cutting
-    _, places = scene.receivers
+    places = scene.places["joints"]
     each = np.array([_away(scene, one, places) for one in sets])
     away, on = each.min(axis=0), each <= COINCIDENT * scene.reach
     for k in np.flatnonzero(on.sum(axis=0) > 1):

@@ -6,7 +6,7 @@ column headers a place is `stress@20`, `velocity_x@20.25` or `velocity_x@[20, 30
 """
 
 import re
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -159,8 +159,7 @@ def places_of(result: xr.Dataset, quantity: str) -> tuple[list[tuple[float, ...]
 
 def recorded(scene: AnyScene, key: str) -> list[tuple[float, ...]]:
     """Return the receivers of a key of [record], m; empty if the kind of scene has no such key."""
-    places: list[Any] = getattr(scene.record, key, [])
-    return [tuple(np.atleast_1d(one).tolist()) for one in places]
+    return [tuple(one.tolist()) for one in scene.places.get(key, ())]
 
 
 def same(one: tuple[float, ...], other: tuple[float, ...]) -> bool:

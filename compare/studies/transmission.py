@@ -216,7 +216,7 @@ def amplitudes(scene: RockMass, velocity: np.ndarray) -> list[float]:
     modes = (waves.polarisations(rock, p).reshape(4, 2) @ axes.rows)[which]
     q = np.concatenate([across, -across])[which]
     joints = np.array([one.through or [0.0, 0.0] for one in scene.joint_sets]) @ axes.rows[1]
-    x, z = (scene.receivers[0] @ axes.rows.T).T
+    x, z = (scene.places["points"] @ axes.rows.T).T
     front = z < joints.min()
     z = z - np.where(front, joints.min(), joints.max())
     phases = np.exp(1j * omega * (p * x[:, None] + np.outer(z, q)))

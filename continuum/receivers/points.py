@@ -35,7 +35,7 @@ LEVEL = 1e-6  # tolerance of coplanar points: of 1 - cosine, and of the distance
 def readings_of(scene: RockMass, found: SceneBody, stress: np.ndarray | None) -> Readings:
     """Return the readings of a rock mass's receivers, at points and on joints; stress : at u = 0
     [d, d], Pa, compression positive."""
-    body, dim, (points, joints) = found.body, found.body.components, scene.receivers
+    body, dim, (points, joints) = found.body, found.body.components, scene.places.values()
     (at, share, motion), pairs = read_at(body, points), stress_components(dim).values()
     constant, carried = np.zeros((len(points), len(pairs))), np.zeros((len(joints), dim))
     read, area = csr_matrix((0, 0)), np.zeros(0)

@@ -64,7 +64,7 @@ def receivers_of(scene: RockMass, blocks: Blocks, faces: Contacts, onto: np.ndar
 
     faces : all contacts, those between blocks first. onto : matrix of `boundaries.freedoms`.
     """
-    sets, (points, joints) = len(scene.joint_sets), scene.receivers
+    sets, (points, joints) = len(scene.joint_sets), scene.places.values()
     at_points = stencils_at(scene, blocks, points)
     read = {one.receiver for one in at_points}
     if lost := [k for k in range(len(points)) if k not in read]:

@@ -162,7 +162,7 @@ def _incident(
 def reads(scene: RockMass, blocks: Blocks) -> csr_array:
     """Return the sparse matrix [d points, f N] from the motion of all blocks to that of a scene's
     points; on joints the mean of the blocks there."""
-    points, dim = scene.receivers[0], scene.domain.dimension
+    points, dim = scene.places["points"], scene.domain.dimension
     sides = sides_at(blocks, points, len(scene.joint_sets))
     count = np.array(list(map(len, sides)))
     which, block = np.repeat(np.arange(len(points)), count), np.concatenate(sides)

@@ -146,7 +146,7 @@ def applies(scene: RockMass) -> Answer:
 
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity, displacement and stress at the points of a scene."""
-    times, points, field = sample_times(scene), scene.receivers[0], medium_field(scene)
+    times, points, field = sample_times(scene), scene.places["points"], medium_field(scene)
     velocity, stress = field(points, times)
     by_integral = (replace(wave, pulse=Integrated(wave.pulse)) for wave in field.waves)
     moved, _ = MediumField(tuple(by_integral))(points, times)

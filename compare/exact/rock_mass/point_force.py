@@ -43,7 +43,7 @@ def applies(scene: RockMass) -> Answer:
     )
     if not answer:
         return answer
-    points, jumps = scene.receivers[0], any(_jumps(one) for one in _histories(scene))
+    points, jumps = scene.places["points"], any(_jumps(one) for one in _histories(scene))
     reach = min(np.linalg.norm(points - one.at, axis=1).min() for one in scene.loads)
     late = known_until(scene) <= reach / float(elastic_rock(scene.rock).p_speed)
     return Answer.unless(
@@ -56,7 +56,7 @@ def applies(scene: RockMass) -> Answer:
 def solve(scene: RockMass) -> xr.Dataset:
     """Return velocity, displacement and stress at the points of a scene."""
     rock, times = elastic_rock(scene.rock), sample_times(scene)
-    points, total = scene.receivers[0], []
+    points, total = scene.places["points"], []
     for load, history in zip(scene.loads, _histories(scene), strict=True):
         assert isinstance(history, Sine | Ricker | Gabor | Recorded)
         offsets, breaks = points - np.array(load.at), _breaks(history)
@@ -77,7 +77,7 @@ def solve(scene: RockMass) -> xr.Dataset:
 
 def known_until(scene: RockMass) -> float:
     """Return the earliest arrival of a side's reflection at a receiver, from mirror images, s."""
-    shape, points, first = shape_of(scene.domain), scene.receivers[0], np.inf
+    shape, points, first = shape_of(scene.domain), scene.places["points"], np.inf
     for corners, normal in (face for side in shape.normals() for face in shape.faces_of(side)):
         for load in scene.loads:
             at = np.array(load.at)

@@ -70,7 +70,7 @@ def beside_loads(scene: RockMass) -> Iterator[str]:
     for key, load in scene.entries("loads"):
         reach = BESIDE * speed * (load.time_scale or scene.time.duration)
         lasts, near = speed * (scene.time.duration - onset(load)), []
-        for at in map(np.array, (*scene.record.points, *scene.record.joints)):
+        for at in np.concatenate([*scene.places.values()]):
             for corners, n in faces:
                 way = at - (start := np.array(load.at or at)) - 2 * ((corners[0] - start) @ n) * n
                 met = key not in plane or abs(n @ plane[key][0]) < 1 - GRAZING
@@ -98,9 +98,9 @@ def side_error(scene: RockMass) -> SideError | None:
     reach = fastest(scene) * (scene.time.duration - max(float(begins), 0.0))
     wavelength = fastest(scene) * max(one.time_scale or scene.time.duration for one in scene.waves)
     away = {
-        key: [(tuple(place), distance(np.array(place), faces)) for place in places]
-        for key in ("points", "joints")
-        if (places := getattr(scene.record, key))
+        key: [(tuple(place.tolist()), distance(place, faces)) for place in places]
+        for key, places in scene.places.items()
+        if len(places)
     }
     if min((d for places in away.values() for _, d in places), default=0.0) > reach:
         return None

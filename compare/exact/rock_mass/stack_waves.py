@@ -131,7 +131,7 @@ def point_receivers(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the points of a scene [m, d], those on a joint or face shifted into their first block;
     whether each is on a joint [m]; and the counterparts of these on the other side."""
-    points, _ = scene.receivers
+    points = scene.places["points"]
     if not len(points):
         return points, np.zeros(0, dtype=bool), points
     apart = (points @ stack.normal)[:, None] - stack.offsets
@@ -147,7 +147,7 @@ def point_receivers(
 
 def joint_receivers(scene: RockMass, stack: JointStack) -> np.ndarray:
     """Return a scene's joint receivers [m, d] (m), projected onto the nearest joint."""
-    _, asked = scene.receivers
+    asked = scene.places["joints"]
     if not len(asked):
         return asked
     chosen = contact_at(stack.blocks, asked, len(scene.joint_sets))
