@@ -16,7 +16,7 @@ from jointwave.cases.schema.damping import Attenuating, Damping
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import Inclined, JointSet
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
-from jointwave.cases.schema.scene import SceneBase
+from jointwave.cases.schema.scene_base import SceneBase
 from jointwave.cases.schema.values import (
     Dip,
     DipDirection,
