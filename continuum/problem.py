@@ -38,18 +38,18 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
         body = body._replace(joints=joints._replace(column=column.reshape(-1)))
         normal, shear = resolved.stiffness, resolved.shear_stiffness if shears else None
         etas, tension, strengths = resolved.time_constant, p.tension, p.strengths(shears, which)
-        less = resolved.less[which]
+        less, lag = resolved.less[which], p.ordinary_time_constant[which]
     else:
         sets, which = scene.joint_sets, of_all(found.blocks, found.across, "joint_set")
         which = np.clip(which, 0, len(sets) - 1)  # any law: cuts through rock are no joints
         stiffness = [[one.normal_stiffness, one.shear_stiffness] for one in sets]
         normal, shear = np.array(stiffness, dtype=float).T
         etas, tension = set_time_constants(scene), np.array([i.tension is not False for i in sets])
-        strengths, less = strength_of(sets, which).strengths(), np.zeros(len(which))
+        strengths, (less, lag) = strength_of(sets, which).strengths(), np.zeros((2, len(which)))
     etas, shear = (None if one is None else one[which] for one in (etas, shear))
     own = law(normal[which], etas, tension[which], shear_stiffness=shear, **strengths)
     if own.maximum_closure is not None:
-        own = own._replace(rock_compliance=uniform(0.0 - less))
+        own = own._replace(rock_compliance=uniform(0.0 - less), rock_time_constant=uniform(lag))
     return body, own
 
 

@@ -152,7 +152,7 @@ class BlockRelaxation:
     def __init__(self, system: BlockSystem, weighed: bool, sticks: bool = False) -> None:
         blocks, model, loads = system.blocks, system.model, system.loads
         self.scene = blocks.scene
-        columns = blocks.columns._replace(time_constants=None)
+        columns = blocks.columns._replace(viscosity=None)
         masses = blocks.masses * mass_factors(blocks.contacts, columns, blocks.masses)
         dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
         own = constants(blocks, dt, masses)._replace(local=0.0, mass=blocks.inertia[:, 0])

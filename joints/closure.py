@@ -15,6 +15,11 @@ and the only root with the sign of D is the traction. Between deformable rock c 
 the joint's own compliance, which limits the stiffness near d_m to a million times the initial one.
 If the rock already includes the joint's compliance, c is negative, and the smaller root is the
 traction up to the stress at which d sigma / dD is infinite.
+
+The joint's dashpot is k_ni eta whatever its closure, the rock's is eta_r / c. In slow motion each
+deforms by its share of the compliance, k_ni (1 + sigma / s_m)^2 = k_t and 1 / K_t = 1 / k_t + c:
+
+    C = K_t^2 (k_ni eta / k_t^2 + c eta_r).
 """
 
 from math import log1p, sqrt
@@ -54,6 +59,33 @@ def closure_stiffness(law, traction):
     c, s_m = closing(law)
     share = s_m / (s_m + traction)
     return 1.0 / (c + law.maximum_closure / s_m * share * share)
+
+
+@formula
+def closure_viscosity(law, traction):
+    """Return C (Pa s/m) at sigma >= 0 (Pa), not below zero where the rock includes more."""
+    stiffness = closure_stiffness(law, traction)
+    joint, rock = viscous_compliance(law, traction)
+    whole = joint + rock
+    return 0.5 * stiffness * stiffness * (whole + abs(whole))
+
+
+@formula
+def closure_viscosity_rise(law, traction):
+    """Return dC / d sigma (s/m) at sigma >= 0 (Pa)."""
+    (c, s_m), stiffness = closing(law), closure_stiffness(law, traction)
+    joint, rock = viscous_compliance(law, traction)
+    rise = rock - c * stiffness * (joint + rock)
+    return 4.0 * stiffness * stiffness * rise / (s_m + traction) if joint + rock > 0.0 else 0.0
+
+
+@formula
+def viscous_compliance(law, traction):
+    """Return k_ni eta / k_t^2 of the joint and c eta_r of the rock, m s/Pa."""
+    s_m = closing(law)[1]
+    share, rock = s_m / (s_m + traction), law.rock_compliance * law.rock_time_constant
+    own = law.normal_viscosity / (law.normal_stiffness * law.normal_stiffness) - rock
+    return own * share * share * share * share, rock
 
 
 @formula

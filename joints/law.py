@@ -16,7 +16,7 @@ import numpy as np
 
 from jointwave.cases.material.closure import stress_in_reach
 from jointwave.cases.scene_type import AnyScene
-from jointwave.joints.closure import closure_stiffness
+from jointwave.joints.closure import closure_stiffness, closure_viscosity
 from jointwave.joints.dilation import lift, riding_stiffness
 from jointwave.joints.energy import elastic_energy, fracture_energy_spent, friction_work, lift_work
 from jointwave.joints.formula import formula
@@ -35,7 +35,8 @@ class Law(NamedTuple):
     residual_cohesion : cohesion after slip, Pa; None where slip does not reduce it.
     tensile_strength, critical_opening : s_t, Pa, and w_c, m; None without softening.
     maximum_closure : d_m, m, of joints with closure, initially of stiffness K; None without.
-    rock_compliance : the rock's share of the compliance 1/K, m/Pa; None without.
+    rock_compliance, rock_time_constant : the rock's share of the compliance 1/K, m/Pa, and its eta,
+        s; None without.
     dynamic_friction, weakening_distance : tan(phi) after weakening, its path D, m; None without.
     dilation, dilation_distance : tan(psi), and the path over which it falls to 0, m; None without.
     direct_effect, evolution_effect, critical_slip_distance, reference_rate, initial_state : a, b,
@@ -57,6 +58,7 @@ class Law(NamedTuple):
     critical_opening: Any = None
     maximum_closure: Any = None
     rock_compliance: Any = None
+    rock_time_constant: Any = None
     dynamic_friction: Any = None
     weakening_distance: Any = None
     dilation: Any = None
@@ -70,7 +72,8 @@ class Law(NamedTuple):
 
 #: Rows of the table that a static state sets to zero; its friction is mu_0.
 IN_MOTION = [
-    Law._fields.index(name) for name in ("normal_viscosity", "shear_viscosity", "direct_effect")
+    Law._fields.index(name)
+    for name in ("normal_viscosity", "shear_viscosity", "rock_time_constant", "direct_effect")
 ]
 
 
@@ -107,7 +110,7 @@ OF_PART = {
     "slip": ("cohesion", "friction"),
     "residual": ("residual_cohesion",),
     "softening": ("tensile_strength", "critical_opening"),
-    "closure": ("maximum_closure", "rock_compliance"),
+    "closure": ("maximum_closure", "rock_compliance", "rock_time_constant"),
     "weakening": ("dynamic_friction", "weakening_distance"),
     "dilation": ("dilation", "dilation_distance"),
     "rate_state": (
@@ -222,15 +225,17 @@ def law(
     )
 
 
-def stiffest(law: Law, scene: "AnyScene") -> tuple[Any, Any]:
-    """Return K_n and K_s (Pa/m; None without shear) for the critical step of a scene: at the
-    largest closure in reach, and for dilatant joints while they slide."""
-    normal, shear = law.normal_stiffness, law.shear_stiffness
+def stiffest(law: Law, scene: "AnyScene") -> Law:
+    """Return the law with the stiffness and viscosity for the critical step of a scene: the largest
+    up to the largest closure in reach, and for dilatant joints while they slide."""
+    normal, viscosity, shear = law.normal_stiffness, law.normal_viscosity, law.shear_stiffness
     if law.maximum_closure is not None:
-        normal = closure_stiffness(law, stress_in_reach(scene))
+        normal = closure_stiffness(law, most := stress_in_reach(scene))
+        if viscosity is not None:
+            viscosity = np.maximum(viscosity, closure_viscosity(law, most))
     if law.dilation is not None:
         normal, shear = riding_stiffness(law.dilation, law.friction, normal, shear)
-    return normal, shear
+    return law._replace(normal_stiffness=normal, normal_viscosity=viscosity, shear_stiffness=shear)
 
 
 def table_of(law: Law) -> np.ndarray:
@@ -252,7 +257,7 @@ def law_of(table, j):
         table[0, j], table[1, j], table[2, j], table[3, j], table[4, j], table[5, j], table[6, j],
         table[7, j], table[8, j], table[9, j], table[10, j], table[11, j], table[12, j],
         table[13, j], table[14, j], table[15, j], table[16, j], table[17, j], table[18, j],
-        table[19, j], table[20, j],
+        table[19, j], table[20, j], table[21, j],
     )  # fmt: skip
 
 
@@ -265,6 +270,7 @@ def law_at(table, j, n):
         table[10 * n + j], table[11 * n + j], table[12 * n + j], table[13 * n + j],
         table[14 * n + j], table[15 * n + j], table[16 * n + j], table[17 * n + j],
         table[18 * n + j], table[19 * n + j], table[20 * n + j],
+        table[21 * n + j],
     )  # fmt: skip
 
 

@@ -1,6 +1,12 @@
 """Normal traction of a joint: spring, dashpot, softening, no tension."""
 
-from jointwave.joints.closure import closure_stiffness, closure_traction, closure_under
+from jointwave.joints.closure import (
+    closure_stiffness,
+    closure_traction,
+    closure_under,
+    closure_viscosity,
+    closure_viscosity_rise,
+)
 from jointwave.joints.formula import formula
 from jointwave.joints.shear import UNLIMITED
 from jointwave.joints.softening import stiffness_left, strength_left, strength_loss
@@ -16,7 +22,7 @@ def normal_traction(law, parts, gap, gap_rate, opening):
     """
     t = spring_alone(law, parts, gap)
     if parts.dashpots:
-        t = t - law.normal_viscosity * gap_rate
+        t = t - dashpot(law, parts, t) * gap_rate
     return _cut(law, parts, t, gap, opening)
 
 
@@ -34,6 +40,16 @@ def spring_alone(law, parts, gap):
         closed = closure_traction(law, -gap if gap < 0.0 else 0.0)
         t = closed if gap < 0.0 and law.maximum_closure < UNLIMITED else t
     return t
+
+
+@formula
+def dashpot(law, parts, spring):
+    """Return the viscosity (Pa s/m) where the spring alone carries `spring` (Pa)."""
+    if parts.closure:
+        stiffens = spring > 0.0 and law.maximum_closure < UNLIMITED
+        stiffened = closure_viscosity(law, spring if spring > 0.0 else 0.0)
+        return stiffened if stiffens else law.normal_viscosity
+    return law.normal_viscosity
 
 
 @formula
@@ -63,7 +79,10 @@ def normal_tangent(law, parts, gap, gap_rate, before, r):
     if parts.closure and gap < 0.0:
         slope = -closure_stiffness(law, t)
     if parts.dashpots:
-        t, slope = t - law.normal_viscosity * gap_rate, slope - law.normal_viscosity * r
+        viscosity = dashpot(law, parts, t)
+        if parts.closure and t > 0.0 and law.maximum_closure < UNLIMITED:
+            slope = slope * (1.0 - closure_viscosity_rise(law, t) * gap_rate)
+        t, slope = t - viscosity * gap_rate, slope - viscosity * r
     if parts.softening:
         opening = gap if gap > before else before
         loss = strength_loss(law, gap, before)

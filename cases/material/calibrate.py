@@ -129,6 +129,7 @@ def _springs(
         "joint_time_constant": joint_eta if damped else None,
         "own_time_constant": own_eta if damped else None,
         "ordinary_time_constant": ordinary_eta,
+        "rock_time_constant": rock_eta,
         "regular": regular,
         "half_joint": np.clip(half, 0.0, (1 - 1 / RIGID) * spacing / moduli / 2),
         "rock_between": rock[0],

@@ -81,6 +81,7 @@ class Properties(JointedRock, Strength):
     joint_time_constant : float array [N - 1], eta of each joint, s; None without any dashpot.
     own_time_constant : the same without the rock's part; between segments from both halves.
     ordinary_time_constant : float array [N - 1], eta of each joint without soft layers, s.
+    rock_time_constant : float array [N - 1], eta of `rock_between`, s.
     tension : bool array [N - 1], whether a joint carries tension.
     soft : int array, indices of the joints that [[soft_layers]] changes.
     weld : bool array [N - 1], whether a contact is no joint, between blocks of intact segments.
@@ -102,6 +103,7 @@ class Properties(JointedRock, Strength):
     joint_time_constant: np.ndarray | None
     own_time_constant: np.ndarray | None
     ordinary_time_constant: np.ndarray
+    rock_time_constant: np.ndarray
     tension: np.ndarray
     soft: np.ndarray
     weld: np.ndarray

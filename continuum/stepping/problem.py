@@ -68,8 +68,8 @@ OF_POINTS = ("traction", "jump")
 class Problem(NamedTuple):
     """A body with its joint law, loads and boundaries; absent parts are None.
 
-    law : of the joints, in columns. stiffest : largest K_n and K_s in reach of each column, Pa/m,
-    numbers or arrays. stress : in rock and joints at u = 0 [d, d], Pa, compression positive.
+    law : of the joints, in columns. stiffest : the law at the largest stiffness and viscosity in
+    reach. stress : in rock and joints at u = 0 [d, d], Pa, compression positive.
     alpha : of mass-proportional damping, 1/s. mechanisms : of the relaxation of rock, whose
     stiffness is then unrelaxed. steady : constant forces [freedoms], N. forces : with a history, as
     `loads.forces.Loads`. comm : mpi4py communicator of processes that share the run. counted :
@@ -79,7 +79,7 @@ class Problem(NamedTuple):
     body: Body
     readings: Readings
     law: Law | None = None
-    stiffest: Any = None
+    stiffest: Law | None = None
     stress: np.ndarray | None = None
     alpha: float = 0.0
     mechanisms: Mechanisms | None = None
@@ -112,8 +112,9 @@ class Problem(NamedTuple):
     def stiffness(self) -> csr_matrix:
         """The stiffness of rock, joints (at the largest closure in reach) and side springs, N/m."""
         found = self.body.stiffness
-        if self.law is not None:
-            found = csr_matrix(found + self.of_joints(*self.stiffest))
+        if (law := self.stiffest) is not None:
+            joints = self.of_joints(law.normal_stiffness, law.shear_stiffness)
+            found = csr_matrix(found + joints)
         if self.quiet.springs is not None:
             of_sides = np.zeros(found.shape[0])
             of_sides[self.quiet.freedom] = self.quiet.springs(0.0).critical_stiffness
@@ -123,7 +124,7 @@ class Problem(NamedTuple):
     @property
     def viscosity(self) -> csr_matrix:
         """The viscosity of rock and joints, N s/m; without entries if there are no dashpots."""
-        law, found = self.law, self.body.damping
+        law, found = self.stiffest, self.body.damping
         if law is not None and law.normal_viscosity is not None:
             joints = self.of_joints(law.normal_viscosity, law.shear_viscosity)
             found = csr_matrix(found + joints) if found.nnz else joints

@@ -110,6 +110,8 @@ def columns_of_pillar(scene: Scene, p: Properties, contacts: Contacts, turns: bo
     normal = np.append(p.stiffness, [one.wall_stiffness for one in walls])
     shear = np.append(p.shear_stiffness, [one.wall_shear_stiffness for one in walls])
     eta, rock, rest = p.joint_time_constant, p.rock_compliance, np.zeros(len(walls))
+    if rock is not None:
+        rock = np.array([np.append(one, rest) for one in (rock, p.rock_time_constant)])
     which = np.where(contacts.column == NO_SET, 1 + len(scene.layers), contacts.column)
     rule = scene.joints.point_rule, scene.joints.contact_points
     return columns_of(
@@ -118,7 +120,7 @@ def columns_of_pillar(scene: Scene, p: Properties, contacts: Contacts, turns: bo
         which,
         np.stack([normal, shear]),
         eta=None if eta is None else np.tile(np.append(eta, rest), (2, 1)),
-        rock=None if rock is None else np.append(rock, rest),
+        rock=rock,
         rules=[rule if turns else ("midpoint", 1)],
         shears=contacts.frame.shape[1] > 1,
     )

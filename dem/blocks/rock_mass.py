@@ -158,6 +158,8 @@ def columns_of_sets(scene: RockMass, joints: RigidJoints, others: np.ndarray) ->
     if any(one.maximum_closure is not None for one in sets):  # rock compliance < the contact's
         rock = np.minimum(np.resize(joints.excess[0], len(normal)), (1 - 1e-9) / normal)
         rock[which == len(sets)] = 0.0
+        rayleigh = scene.damping.rayleigh  # damps rock as it does joints
+        rock = np.stack([rock, np.full_like(rock, rayleigh.coefficients[1] if rayleigh else 0.0)])
     eta, laws = _time_constants(scene, stiffness, which), [*sets, JointLaw()]
     of_sets = [*((one.point_rule, one.contact_points) for one in sets), CUT]
     rules: list[Rule] = [of_sets[k] for k in which]

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,16 +21,16 @@ class Columns(NamedTuple):
     """The joint law in columns, with the initial K_n and K_s of each [columns], Pa/m.
 
     stiffest : K_n and K_s at the largest closure in reach, sliding dilatant joints included
-    [2, columns], Pa/m. time_constants : viscosity over stiffness, normal and in shear [2, columns],
-    s; None without dashpots. rules : of contact points, one for all or one a column. fails :
-    whether joints can open, slip or break, point by point.
+    [2, columns], Pa/m. viscosity : largest, normal and in shear [2, columns], Pa s/m; None without
+    dashpots. rules : of contact points, one for all or one a column. fails : whether joints can
+    open, slip or break, point by point.
     """
 
     law: Law
     normal: np.ndarray
     shear: np.ndarray
     stiffest: np.ndarray
-    time_constants: np.ndarray | None
+    viscosity: np.ndarray | None
     rules: list[Rule]
     fails: bool
 
@@ -54,16 +54,23 @@ def columns_of(
     """Return the joint law in columns; which : index in `laws` of each column [columns].
 
     stiffness : normal and in shear [2, columns], Pa/m. eta : viscosity over stiffness, s; None
-    without dashpots. rock : the rock's part of the compliance, m/Pa; None where no joint stiffens.
-    rules : as in `Columns`. shears : whether there is motion along joints.
+    without dashpots. rock : the rock's part of the compliance, m/Pa, and its eta, s [2, columns];
+    None where no joint stiffens. rules : as in `Columns`. shears : whether motion is along joints.
     """
     (normal, shear), tension = stiffness, np.array([one.tension is not False for one in laws])
     strengths, tension = strength_of(laws, which).strengths(shears), tension[which]
     across = shear if shears else None
-    found = law(normal, eta, tension, shear_stiffness=across, rock_compliance=rock, **strengths)
-    most = [np.resize(0.0 if one is None else one, len(normal)) for one in stiffest(found, scene)]
-    fails = not tension.all() or bool(strengths)
-    return Columns(found, normal, shear * shears, np.array(most), eta, rules, fails)
+    if rock is not None:
+        strengths |= {"rock_compliance": rock[0], "rock_time_constant": rock[1]}
+    found = law(normal, eta, tension, shear_stiffness=across, **strengths)
+    most, fails = stiffest(found, scene), not tension.all() or bool(strengths)
+
+    def each(*values: Any) -> np.ndarray:
+        return np.array([np.resize(0.0 if one is None else one, len(normal)) for one in values])
+
+    viscous = None if eta is None else each(most.normal_viscosity, most.shear_viscosity)
+    stiff = each(most.normal_stiffness, most.shear_stiffness)
+    return Columns(found, normal, shear * shears, stiff, viscous, rules, fails)
 
 
 def points_on(contacts: Contacts, rules: list[Rule]) -> np.ndarray:

@@ -42,7 +42,7 @@ def critical_time_step(
     masses : matrices of the blocks [N, F, F]. local : Cundall's damping. springs : at the ends of a
     row; None for blocks that are not in a row.
     """
-    eta, damping, back = columns.time_constants, np.zeros(1), np.zeros(0)
+    damping, back = np.zeros(1), np.zeros(0)
     if springs is not None:
         contacts, masses = begin_of(contacts, columns, masses)
         back = np.linalg.inv(np.linalg.cholesky(masses))
@@ -58,8 +58,8 @@ def critical_time_step(
         return lower_band(found)
 
     own = matrices(columns.stiffest, 1.0)
-    if eta is not None:
-        damping = matrices((eta[0] * columns.normal, eta[1] * columns.shear), 0.0)
+    if columns.viscosity is not None:
+        damping = matrices(columns.viscosity, 0.0)
 
     def largest(a: float, b: float) -> float:
         both = a * own + b * damping
@@ -68,7 +68,7 @@ def critical_time_step(
         )
         return (1 + local) * highest
 
-    return critical_step(largest, eta is not None)
+    return critical_step(largest, columns.viscosity is not None)
 
 
 def squared_frequencies(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
@@ -107,8 +107,8 @@ def begin_of(
 ) -> tuple[Contacts, np.ndarray]:
     """Return contacts and masses of a shorter row with the same critical step: of equal blocks and
     joints, the first ENOUGH_BLOCKS; the largest eigenvalue of a longer row is within 1e-6."""
-    count, eta = len(masses), columns.time_constants
-    joints, values = count - 1, [*columns.stiffest, *([] if eta is None else eta)]
+    count, joints = len(masses), len(masses) - 1
+    values = [*columns.stiffest, *([] if columns.viscosity is None else columns.viscosity)]
     alike = all((one[:joints] == one[0]).all() for one in values)
     if (
         not alike

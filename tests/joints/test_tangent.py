@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from jointwave.joints.closure import closing, closure_stiffness
 from jointwave.joints.dilation import lift
 from jointwave.joints.law import Law
-from jointwave.joints.normal import normal_tangent, normal_traction, spring_alone
+from jointwave.joints.normal import dashpot, normal_tangent, normal_traction, spring_alone
 from jointwave.joints.shear import shear_strength, shear_traction
 from jointwave.joints.softening import stiffness_left, strength_left
 from tests.joints.points import DT, Point, advance, at_point, some, tangent
@@ -42,6 +42,7 @@ def one_law(draw, dashpots, opens, shears):
     if "closes" in opens:
         parts.update(maximum_closure=1e-4 * draw(some(0.1, 10)))
         parts.update(rock_compliance=draw(some(0.01, 0.9)) / k)
+        parts.update(rock_time_constant=draw(some(0, 1)) * eta)
     if "softening" in opens:
         first, ductility = draw(some(0.01, 0.5)) * 1e-4, draw(some(1.1, 100))
         parts.update(tensile_strength=k * first, critical_opening=ductility * first)
@@ -121,7 +122,8 @@ class Step:
         if parts.softening:
             left = strength_left(law, opening)
             share = stiffness_left(law, opening) if gap > 0 else 1.0
-        free = share * (spring_alone(law, parts, gap) - law.normal_viscosity * gap_rate)
+        spring = spring_alone(law, parts, gap)
+        free = share * (spring - dashpot(law, parts, spring) * gap_rate)
         signs = [gap > 0, t_n > 0, t_n == 0, free < -left * (1 + EPS)]
         if parts.softening:
             first = law.tensile_strength / law.normal_stiffness

@@ -63,6 +63,22 @@ def twin_closure_traction(law, closure):
     return brentq(left, 0.0, closure / c, xtol=1e-300, rtol=4 * np.finfo(float).eps)
 
 
+def twin_viscosity(law, pressed):
+    """Return C (Pa s/m) under a stress (Pa), and the sum of its parts' sizes: dashpots of joint and
+    rock, each deforming by its share of the compliance of small changes; never below zero."""
+    if law.normal_viscosity is None or law.maximum_closure is None or pressed <= 0:
+        return law.normal_viscosity or 0.0, 0.0
+    of_rock = law.rock_compliance or 0.0
+    rock = of_rock * (law.rock_time_constant or 0.0)
+    own = 1 / law.normal_stiffness - of_rock
+    k = 1 / (own * (1 - 1e-6))
+    left = (1 + pressed / (k * law.maximum_closure)) ** -2
+    whole = (1 / (of_rock + 1e-6 * own + left / k)) ** 2
+    at_rest = law.normal_viscosity / law.normal_stiffness**2
+    sizes = whole * ((at_rest + rock) * left**2 + rock)
+    return max(whole * ((at_rest - rock) * left**2 + rock), 0.0), sizes
+
+
 def twin_normal_traction(law, gap, gap_rate, opening=None):
     """Return t_n of a spring and a dashpot in parallel.
 
@@ -80,6 +96,7 @@ def twin_normal_traction(law, gap, gap_rate, opening=None):
     t = -stiffness * gap
     if law.maximum_closure is not None and gap < 0:
         t = twin_closure_traction(law, -gap)
+        viscosity, _ = twin_viscosity(law, t)
     t -= viscosity * gap_rate
     pull = 0.0 if law.carries_tension is False else twin_strength_left(law, opening)
     return max(t, -pull)
@@ -259,6 +276,7 @@ def one_law(draw, dashpots, opens, shears):
     if "closes" in opens:
         parts["maximum_closure"] = one(1e-6, 1e-3)
         parts["rock_compliance"] = one(0, 0.99) / stiffness if "rock" in opens else None
+        parts["rock_time_constant"] = one(0, 1e-4) if "rock" in opens else None
     if "softening" in opens:
         parts["tensile_strength"] = one(1e3, 1e7)
         parts["critical_opening"] = one(1.1, 100) * parts["tensile_strength"] / stiffness
@@ -302,7 +320,9 @@ def scales(one, gap, rate, slip, slip_rate, h):
     n += one.tensile_strength or 0.0
     if one.maximum_closure is not None and gap < 0:  # what the last digit of the gap is worth
         law = at_point(one)[0]
-        n += closure_stiffness(law, closure_traction(law, -gap)) * abs(gap)
+        pressed = closure_traction(law, -gap)
+        n += closure_stiffness(law, pressed) * abs(gap)
+        n += twin_viscosity(one, pressed)[1] * abs(rate)
     if one.shear_stiffness is None:
         return n, 0.0
     s = one.shear_stiffness * (abs(h.ex) + abs(h.ez) + abs(slip[0]) + abs(slip[1]))
@@ -431,6 +451,7 @@ def test_unlike_joints_behave_as_if_alone(data):
     alone.append(data.draw(rated("dashpots", "softening", "cf")))
     without = {"friction": 0.0, "carries_tension": True, "rock_compliance": 0.0}
     without |= {"dynamic_friction": 0.0, "dilation": 0.0, "direct_effect": 0.0}
+    without |= {"rock_time_constant": 0.0}
     parts = {}
     for name, values in zip(Law._fields, zip(*alone, strict=True), strict=True):
         absent = without.get(name, UNLIMITED)

@@ -14,6 +14,7 @@ from jointwave.cases.errors import StoppedError
 from jointwave.cases.histories import Sine
 from jointwave.compare.exact.joint import closing_joint
 from jointwave.compare.exact.joint.closing_joint import ClosingJoint, Passed
+from jointwave.compare.misfit.metrics import misfit
 from jointwave.joints import law
 from jointwave.results.dataset import energy_residual
 
@@ -104,6 +105,37 @@ def test_it_replaces_a_joint_of_the_homogenised_bar(closing):
     scene = closing(pillar=pillar, rock=ROCK, record__velocity=[])
     exact, found = closing_joint.solve(scene), bar(scene)
     assert np.linalg.norm(found.stress - exact.stress) <= 1e-3 * np.linalg.norm(exact.stress)
+
+
+def test_small_waves_are_damped_by_joints_and_rock_in_series(pillar):
+    """Of joints nine times as stiff under stress, each dashpot takes k eta x^2 of its share x of
+    the closure. Rigid blocks are those of linear joints with this sum; the jointed rock, whose
+    parts move apart, is a block's dispersion off, 1 %."""
+    k, c, mass, zeta, size = 9.2e9, 0.5 / 8.64e10, 1200.0, 0.2, 1.0
+    stiffened = 1 / (1 / (9 * k) + c)
+    eta = 2 * zeta * np.sqrt(mass * (1 / k + c))
+    share = stiffened / (9 * k)
+    sums = k * eta * share**2 + eta / c * (1 - share) ** 2
+
+    def scene(joints, stress):
+        return pillar(
+            pillar={"length": 20.0, "side": 0.5, "block": 0.5},
+            rock=dict.fromkeys(ROCK) | {"density": 2400.0, "intact_modulus": 8.64e10},
+            joints=joints,
+            prestress={"normal": stress},
+            load={"shape": "ricker", "amplitude": size, "period": 0.01},
+            ends={"start": "free", "end": "free"},
+            time={"duration": 0.02},
+            record={"stress": [15.0], "velocity": [10.25]},
+        )
+
+    closes = scene(
+        {"normal_stiffness": k, "damping_ratio": zeta, "maximum_closure": 1e-4}, 2e-4 * k
+    )
+    linear = {"normal_stiffness": 9 * k, "damping_ratio": sums / (2 * np.sqrt(mass * stiffened))}
+    blocks, expected = dem.simulate(closes), dem.simulate(scene(linear, 0.0))
+    assert misfit(blocks, expected) <= 1e-5
+    assert misfit(blocks, continuum.simulate(closes, model="jointed")) <= 1e-2
 
 
 @pytest.mark.parametrize("engine", [dem.simulate, bar])
