@@ -137,8 +137,15 @@ def test_impulse_is_the_integral_of_value(form, load, a, b):
     assert own.impulse(b) - own.impulse(a) == pytest.approx(sum(pieces), abs=1e-7 * scale)
 
 
-@pytest.mark.parametrize("load", [Sine(2.0, 0.3, 0.5), Ricker(2.0, 0.3), Gabor(2.0, 0.3, 4)])
+RECORD = Recorded(np.array([0.0, 0.06, 0.2]), np.array([0.0, 2.0, 0.0]))
+
+
+@pytest.mark.parametrize(
+    "load", [Sine(2.0, 0.3, 0.5), Sine(2.0, 0.05, 2), Ricker(2.0, 0.3), Gabor(2.0, 0.3, 4), RECORD]
+)
 def test_rate_is_the_slope_of_value(load):
+    """Before and after it, a load stands still."""
+    assert np.abs(load.rate(np.array([-1.0, 9.0]))).max() < 1e-99
     t, h = np.linspace(0.01, 0.14, 30), 1e-6
     slope = (load.value(t + h) - load.value(t - h)) / (2 * h)
     assert load.rate(t) == pytest.approx(slope, abs=1e-7 * np.abs(slope).max())

@@ -78,8 +78,7 @@ def test_waves_in_a_wall_of_bricks_are_those_in_the_wall_that_is_cut(name, scene
     found, expected = engine.run(own), engine.run(cut)
     assert np.abs(expected.velocity).max() > 0.01
     for one in ("velocity", "stress"):
-        off = np.abs(found[one] - expected[one]).max() / np.abs(expected[one]).max()
-        assert off < OFF[name]
+        assert np.abs(found - expected)[one].max() < OFF[name] * np.abs(expected[one]).max()
 
 
 def test_a_run_of_blocks_of_a_file_is_of_that_file(scene, tmp_path):
@@ -99,16 +98,11 @@ def test_a_copy_of_a_scene_has_its_blocks(scene, tmp_path):
     assert load(path)[0].domain.holes == []
 
 
-PRESSED = """
-loads = [{ kind = "pressure", opening = 0, shape = "ricker", amplitude = 1e6, period = 4e-3 }]
-"""
-
-
 def test_a_window_is_an_opening(scene):
-    found = scene(SCENE.replace("waves = ", PRESSED + "waves = "), wall(windows=[(1, 2)]))
-    (window,) = found.domain.holes
-    assert np.array(window).min(axis=0).tolist() == [1.5, 0.5]
-    assert np.array(window).max(axis=0).tolist() == [2.5, 1.0]
+    load = 'loads = [{ kind = "pressure", opening = 0, shape = "step", amplitude = 1e6 }]\n'
+    (window,) = scene(load + SCENE, wall(windows=[(1, 2)])).domain.holes
+    assert np.min(window, axis=0).tolist() == [1.5, 0.5]
+    assert np.max(window, axis=0).tolist() == [2.5, 1.0]
 
 
 def test_a_sweep_runs_anew_where_the_blocks_have_changed(scene, tmp_path, jointwave):
@@ -130,11 +124,8 @@ BARE = but("spacing = 0.5\n", "").replace("spacing = 1.0\n", "")
     "text, blocks, words",
     [
         (SCENE, "", "domain.blocks = 'wall.obj': has no blocks"),
-        (SCENE, wall() + "\no more\nf 1 2 3 4", "'brick 0 0' and 'more' overlap near ["),
         (but("wall.obj", "lost.obj"), None, "domain.blocks = 'lost.obj': cannot be read"),
-        (but("dip = 90.0", "dip = 0.0"), None, "as near to set 'bed' as to 'head'"),
         (SCENE + 'ends_at = ["bed"]\n', None, "has no effect: domain.blocks has the joints"),
-        (but("2.3, 0.25", "9.0, 0.25"), None, "record.points[0]"),
         (but('obj"', 'obj", openings = [[[1.0, 1.0]]]'), None, "are part of domain.blocks"),
         (but('.obj"', '.obj", size = [1.0, 1.0]'), None, "exactly one of domain.size"),
     ],

@@ -74,10 +74,8 @@ def test_the_laplace_bar_agrees_with_images_at_every_end(scene, misfit, start, e
 )
 def test_the_laplace_bar_agrees_with_one_joint(scene, misfit, zeta, start, end, duration):
     """0.009 % by the rules of `laplace`. Velocity on the layer is the mean of both sides."""
-    layer = {"y": 20.0, "spacing_stiffness": 4.375e8}
-    layer |= {} if zeta is None else {"damping_ratio": zeta}
     at = scene(
-        soft_layers=[layer],
+        soft_layers=[{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": zeta}],
         ends={"start": start, "end": end},
         time={"duration": duration},
         record={"stress": [5.0, 20.0, 41.3], "velocity": [0.0, 19.75, 20.0, 33.3]},
@@ -94,15 +92,8 @@ def test_parallel_joints_transmit_as_in_closed_form(count, ratio):
     a dashpot for an end stress of 2."""
     omega = 100.0
     spacing = ratio * 2 * np.pi * np.sqrt(4e9 / 2400) / omega
-    y, ones = 100 + spacing * np.arange(count), np.ones(count)
-    bar = replace(
-        ROCK,
-        joint_y=y,
-        joint_compliance=ones / (Z * omega),
-        joint_time_constant=0 * ones,
-        start=End(Z),
-        end=End(Z),
-    )
+    joints = 100 + spacing * np.arange(count), np.full(count, 1 / (Z * omega)), np.zeros(count)
+    bar = Bar(1000.0, ROCK.rocks, *joints, End(Z), End(Z))
     stress, _ = transfer(bar, np.array([1e-9 + 1j * omega]), np.array([900.0]))
     assert abs(2 * stress[0, 0]) == pytest.approx(transmission(count, 1.0, ratio), rel=1e-9)
 
@@ -119,11 +110,9 @@ def test_a_step_and_a_record_arrive_as_images_say(misfit, monkeypatch, front):
     triangle = Recorded(np.array([0.0, 0.01, 0.04]), np.array([0.0, 1e6, 0.0]))
     for load, bound in ((triangle, 9e-6), (Step(1e6), 4e-2)):
         stress, velocity, displacement = laplace.bounded(bar, load, times, [21.0], [33.0])[0]
-        bound = 1e-9 if front else bound
         exact = images.Front(60.0, c, Z, -1.0, -1.0).waves(load, times, [21.0], [33.0])
-        assert misfit(stress, exact[0]) < bound
-        assert misfit(velocity, exact[1]) < bound
-        assert misfit(displacement, exact[2]) < 1e-7
+        off = misfit(stress, exact[0]), misfit(velocity, exact[1])
+        assert max(off) < (1e-9 if front else bound) and misfit(displacement, exact[2]) < 1e-7
 
 
 def random_bar(scene, folder, seed):
@@ -171,9 +160,7 @@ def test_the_bound_of_the_error_holds(scene, tmp_path, monkeypatch, seed):
     monkeypatch.setattr(laplace, "TAIL", 2.5)
     finer = solution.run(at)
     for name in FIELDS:
-        waves, exact = (
-            x[name].values.reshape(-1, len(x.time)).astype(float) for x in (found, finer)
-        )
+        waves, exact = (x[name].values.reshape(-1, len(x.time)) for x in (found, finer))
         bound = found[f"{name}_error"].values.ravel()
         error = np.sqrt(((waves - exact) ** 2).mean(axis=1))
         assert (error <= bound).all(), (name, error / bound)
@@ -194,9 +181,8 @@ def test_the_damped_bar_s_modes_agree(scene, misfit, zeta):
     """Each to its own bound; both are smooth but at y = 0, where kinks of the load fall on
     samples."""
     at = scene(joints={"damping_ratio": zeta})
-    damped, laplace_bar = modes.solve_damped(at), EQUIVALENT.run(at)
-    for variable in FIELDS:
-        assert misfit(damped, laplace_bar, variable) < 9e-5
+    a, b = modes.solve_damped(at), EQUIVALENT.run(at)
+    assert max(misfit(a, b, variable) for variable in FIELDS) < 9e-5
 
 
 def test_over_and_critically_damped_modes_satisfy_their_equation():
@@ -243,12 +229,8 @@ def test_one_damped_layer_damps_slow_waves_alike_in_all_three_models(pillar, mis
     blocks in 65 m of wave leave a dispersion of 5e-4, and the models terms of (omega eta)^2."""
     scene = pillar(
         pillar__block=0.25,
-        rock={
-            "density": 2400.0,
-            "equivalent_modulus": 4.1e9,
-            "equivalent_poisson": 0.25,
-            "intact_modulus": 5.4e9,
-        },
+        rock={"density": 2400.0, "equivalent_modulus": 4.1e9, "equivalent_poisson": 0.25},
+        rock__intact_modulus=5.4e9,
         joints={},
         soft_layers=[{"y": 20.0, "spacing_stiffness": 1.5e9, "damping_ratio": 1.0}],
         load={"shape": "ricker", "amplitude": 1e6, "period": 0.03},

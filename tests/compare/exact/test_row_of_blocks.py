@@ -95,15 +95,15 @@ class Points:
         times, rows, x = sample_times(self.scene), [], np.zeros(60)
         A = np.array([self.slope(-1.0, e) for e in np.eye(60)]).T
         b = self.slope(5e-4, np.zeros(60)) / self.load.value(5e-4)
+
+        def rate(t, x):
+            return A @ x + b * self.load.value(t)
+
         breaks = [t for t in self.load.breaks if 0 < t < times[-1]]
         for start, stop in pairwise([0.0, *breaks, times[-1]]):
             within = np.append(times[(times >= start) & (times < stop)], stop)
             tight = {"rtol": 1e-11, "atol": 1e-14}
-
-            def slope(t, x):
-                return A @ x + b * self.load.value(t)
-
-            *part, x = solve_ivp(slope, (start, stop), x, "DOP853", within, **tight).y.T
+            *part, x = solve_ivp(rate, (start, stop), x, "DOP853", within, **tight).y.T
             rows += part
         found = np.array([*rows, x])
         return found[:, :24], found[:, 36:]
@@ -132,9 +132,8 @@ CASES = {
 def test_the_sum_over_points_by_a_tight_ode_solver_agrees(scene, name):
     """The solver's 1e-11 a step gathers over some thousand of them; forces by stiff springs lose
     two digits of the motion."""
-    tables = CASES[name]
-    tables = tables | {"load": {"period": 0.004} | tables["load"]}
-    at = scene(pillar=SHORT, time={"duration": 0.01}, record=CENTRES, **tables)
+    load = {"load": {"period": 0.004} | CASES[name]["load"]}
+    at = scene(pillar=SHORT, time={"duration": 0.01}, record=CENTRES, **CASES[name] | load)
     points, result = Points(at), row_of_blocks.solve(at)
     q, v = points.solved()
     pulls = [(q + eta * v) @ pull[:, :24].T for pull, eta in points.joints]
@@ -156,9 +155,8 @@ def test_springs_push_as_the_sum_over_the_points_of_any_rule(scene, n, rule):
     """Round-off: some hundred terms, each known to 1e-16."""
     rules = {"contact_points": n, "point_rule": rule}
     at = scene(pillar=SHORT, load=ACROSS, soft_layers=SOFT, joints=rules, record=CENTRES)
-    points, q = Points(at), np.random.default_rng(3).standard_normal(24)
-    expected = -(points.K[:24, :24] @ q)
-    found = -(system_of(at).stiffness @ q)
+    q = np.random.default_rng(3).standard_normal(24)
+    expected, found = Points(at).K[:24, :24] @ q, system_of(at).stiffness @ q
     assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
 
 

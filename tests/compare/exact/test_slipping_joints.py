@@ -95,8 +95,7 @@ def test_energy_is_transmitted_reflected_stored_or_spent_on_friction(tau, kappa)
     compliance = 0.0 if np.isinf(kappa) else 1 / (kappa * Z * OMEGA)
     s, _ = transmitted(SlipJoint(0.0, compliance, tau), load, times)
     incident = load.value(times)
-    slides = np.where(np.abs(s) >= tau, 2 * np.abs(incident - s) / Z, 0.0)
-    slides[incident * s < s * s] = 0.0
+    slides = np.where((np.abs(s) >= tau) & (incident * s >= s * s), 2 * np.abs(incident - s) / Z, 0)
     spent = trapezoid((s**2 + (s - incident) ** 2) / Z + tau * slides, times)
     stored = compliance * s[-1] ** 2 / 2
     whole = trapezoid(incident**2 / Z, times)
@@ -185,9 +184,10 @@ def test_the_bound_of_its_error_holds_where_samples_are_far_apart_too(scene, int
     """By a record eight times as dense, whose crossings of the strength are all found."""
     layer = {"y": 20.0, "cohesion": 2e5, "friction_angle": 0.0, "spacing_stiffness": 4.375e8}
     tables = SHEAR | {"time": {"duration": 0.04}, "soft_layers": [layer]}
-    record = SHEAR["record"] | {"interval": interval}
-    found = sliding_joint.solve(scene(**tables | {"record": record}))
-    dense = sliding_joint.solve(scene(**tables | {"record": record | {"interval": interval / 8}}))
+    found, dense = (
+        sliding_joint.solve(scene(**tables | {"record": SHEAR["record"] | {"interval": h}}))
+        for h in (interval, interval / 8)
+    )
     for name in ("shear", "velocity", "displacement"):
         exact = dense[name].values[:, ::8]
         error = np.sqrt(((found[name].values - exact) ** 2).mean(axis=1))

@@ -130,9 +130,7 @@ def test_a_force_in_space_that_stays_is_kelvins():
     kelvin = (3 - 4 * nu) * f + gamma * (gamma @ f)[:, None]
     kelvin /= 16 * np.pi * ROCK.shear_modulus * (1 - nu) * r
     found = motion(ROCK, f, *ramp_of(1e-3), [0.0, 1e-3, np.inf], IN_SPACE, np.array([0.02]))
-    np.testing.assert_allclose(
-        found.displacement[..., 0], kelvin, rtol=0, atol=1e-13 * kelvin.max()
-    )
+    assert np.abs(found.displacement[..., 0] - kelvin).max() <= 1e-13 * kelvin.max()
     cosine, weight = np.polynomial.legendre.leggauss(6)
     angle = 2 * np.pi * np.arange(8) / 8
     sine = np.sqrt(1 - cosine**2)[:, None]

@@ -1,12 +1,9 @@
 """Shared by the tests of exact solutions of rock masses."""
 
-from copy import deepcopy
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from jointwave.cases.validate import validated
+from jointwave.cases.read import load_tables
 
 
 @pytest.fixture(scope="session")
@@ -35,12 +32,12 @@ def rock_mass(one_joint, joint):
     )
 
     def scene(**changes):
-        tables = deepcopy(own | changes)
+        tables = own | changes
         for key, value in changes.items():
             if isinstance(own.get(key), dict):
                 both = own[key] | value
                 tables[key] = {k: v for k, v in both.items() if v is not None}
-        return validated(tables, Path("scene.toml"), frozenset())
+        return load_tables(tables)
 
     return scene
 

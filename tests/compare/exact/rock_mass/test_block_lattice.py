@@ -28,8 +28,7 @@ def dim(request):
 
 @pytest.fixture
 def blocks(rock_mass, joint, wave, dim):
-    """Return blocks of 1 m by 0.5 m in 3 m by 6 m, in space 0.75 m and 1.5 m wide, and tables
-    changed."""
+    """Blocks of 1 m by 0.5 m in 3 m by 6 m, in space 0.75 m and 1.5 m wide, and tables changed."""
     sets = [
         joint(**LAW, name=name, dip=dip, spacing=spacing, through=[0.0] * dim)
         | ({} if towards is None else {"dip_direction": towards})
@@ -37,12 +36,11 @@ def blocks(rock_mass, joint, wave, dim):
     ]
     across = [0.4] * (dim - 2)
     record = [[1.5, *across, 0.25], [0.5, *across, 3.25], [1.5, *across, 5.75]]
-    up = {"direction": [0.0] * (dim - 1) + [1.0]}
     tables = {
         "joint_sets": sets,
         "domain": {"size": SIZE[dim]},
         "time": {"duration": 0.02},
-        "waves": [wave(**up)],
+        "waves": [wave(direction=[0.0] * (dim - 1) + [1.0])],
         "record": {"points": record, "joints": []},
     }
     sides = {} if dim == 2 else {"boundaries": {"front": "quiet", "back": "quiet"}}
@@ -86,17 +84,17 @@ def test_a_column_under_a_p_wave_is_the_chain(blocks, dim):
 def test_steps_of_the_engine_come_to_it_at_the_second_order(blocks, wave, dim, dip):
     """An oblique wave on boxes, and on blocks whose principal axes are oblique, with quiet sides
     all around: leapfrog is off by the square of its step, in velocity and in displacement."""
-    off, steps, waves = [], [], [wave(direction=SLANT[dim])]
+    off, steps = [], []
     bed, *others = blocks().joint_sets
     bed = bed.model_copy(update={"dip": dip, "dip_direction": 40.0 if dim == 3 else None})
     sets = [one.model_dump(exclude_none=True) for one in (bed, *others)]
+    waves = [wave(direction=SLANT[dim])]
     tables = {"waves": waves, "joint_sets": sets, "time": {"duration": 0.01}}
     exact = solve("block-lattice", blocks(**tables))
     for fraction in (0.4, 0.1):
-        numerics = {"dem": {"step_fraction": fraction}}
-        found = solve("dem", blocks(**tables, numerics=numerics))
+        found = solve("dem", blocks(**tables, numerics={"dem": {"step_fraction": fraction}}))
         steps.append(found.attrs["dt"])
-        names = ("velocity", "displacement")
-        off.append([float(abs(found[x] - exact[x]).max() / abs(exact[x]).max()) for x in names])
+        worst = abs(found - exact).max() / abs(exact).max()
+        off.append([worst[name].item() for name in ("velocity", "displacement")])
     rate = np.log(np.divide(*off)) / np.log(steps[0] / steps[1])
     assert rate == pytest.approx(2, abs=0.1) and max(off[1]) < 2e-4

@@ -5,11 +5,7 @@ import pytest
 
 from jointwave.cases.material.effective_medium import tensor
 from jointwave.compare.engines import applies, solve
-from jointwave.compare.exact.rock_mass.effective_medium import (
-    MediumField,
-    medium_field,
-    medium_stiffness,
-)
+from jointwave.compare.exact.rock_mass import effective_medium as medium
 from jointwave.compare.exact.rock_mass.field import field_of
 
 #: lambda = mu = 20 GPa, so that K_n = 2 mu / 1 m and K_s = mu / 1 m.
@@ -21,7 +17,6 @@ DIAGONAL = [np.sqrt(0.5), np.sqrt(0.5)]
 
 @pytest.fixture
 def crossed(rock_mass, joint):
-    """Return rock with two orthogonal sets and tables changed."""
     record = {"points": [[4.0, 6.0], [30.0, 20.0]], "joints": []}
 
     def scene(law=(), **changes):
@@ -87,20 +82,20 @@ def test_the_medium_is_in_balance(rock_mass, joint, wave):
     force = np.array([xx_x + xy_y, xy_x + yy_y]).T[2:-2]
     assert np.abs(force - inertia).max() < 1e-6 * np.abs(inertia).max()
     strain = np.array([slope(u[rows]) for rows in along]).transpose(1, 2, 0)
-    expected = np.einsum("ijkl,tkl->tij", tensor(medium_stiffness(scene)), strain)
+    expected = np.einsum("ijkl,tkl->tij", tensor(medium.medium_stiffness(scene)), strain)
     off = -stress[2] - expected[:, [0, 1, 0], [0, 1, 1]]
     assert np.abs(off).max() < 1e-6 * np.abs(stress).max()
 
 
 def test_its_waves_enter_where_joints_cross(crossed, joint):
     scene = crossed()
-    found, own = field_of(scene), medium_field(scene)
-    assert isinstance(found, MediumField)
+    found, own = field_of(scene), medium.medium_field(scene)
+    assert isinstance(found, medium.MediumField)
     times, points = np.linspace(0, 0.02, 11), np.array([[0.0, 3.0], [40.0, 9.0]])
     for one, other in zip(found(points, times), own(points, times), strict=True):
         assert np.array_equal(one, other) and np.abs(one).max() > 0
     alone = crossed(joint_sets=[joint(**LAW), joint(name="fault", dip=80.0)])
-    assert not isinstance(field_of(alone), MediumField)
+    assert not isinstance(field_of(alone), medium.MediumField)
 
 
 @pytest.mark.parametrize("kind", ["P", "S"])

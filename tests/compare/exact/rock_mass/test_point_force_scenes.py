@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.histories import Recorded, Ricker, Sine
 from jointwave.compare.engines import applies, solve
 
 IN_SPACE = "is for a rock mass in the plane, not for one in space"
@@ -63,19 +62,3 @@ def test_a_force_in_space_reaches_receivers_and_then_sides(forced):
     assert along[t < 5 / A].max() == 0 < along[t < 5 / B, 1].max()
     assert applies("line-force", scene).reason == IN_SPACE
     assert applies("point-force", forced()).reason == IN_PLANE
-
-
-@pytest.mark.parametrize(
-    "history",
-    [
-        Sine(3.0, 0.01, 2),
-        Ricker(3.0, 0.01),
-        Recorded(np.array([0.0, 0.004, 0.01]), np.array([0.0, 2.0, 0.0])),
-    ],
-)
-def test_rates_of_histories(history):
-    """By central differences of 1 ns; at both ends a history stands still."""
-    t = np.array([0.0013, 0.0029, 0.0061, 0.0093, 0.0137])
-    rates = (history.value(t + 1e-9) - history.value(t - 1e-9)) / 2e-9
-    assert history.rate(t) == pytest.approx(rates, rel=1e-6, abs=1e-4)
-    assert history.rate(np.array([-1.0, 1.0])).tolist() == [0.0, 0.0]
