@@ -9,6 +9,8 @@ import time
 
 import pytest
 
+from tests.compare.runs.checkpoint.commands import arguments, refuse_difference, until
+
 OLD = b"CDF of an earlier run"
 NOTICES = 30  # s, in which mpiexec has long seen that a process has died
 
@@ -18,10 +20,8 @@ def checkpoints(folder):
 
 
 def kill(process, ranks, rng):
-    """Kill the only process of a run, or one of those that share it, which ends them all.
-
-    mpiexec may wait for ever for one that dies while it is being started: then all are killed.
-    """
+    """Kill the only process of a run, or one of those that share it, which ends them all. mpiexec
+    may wait for ever for one that dies while it is being started: then all are killed."""
     victim = process.pid
     if ranks > 1:
         named = ["pgrep", "-P", str(victim), "-f", "compare"]
@@ -40,9 +40,7 @@ def kill(process, ranks, rng):
     ("kind", "kills"),
     [("axial", 2), ("shared", 1), pytest.param("axial", 10, marks=pytest.mark.slow)],
 )
-def test_killed_run_goes_on_to_the_same_bits(
-    kind, kills, tmp_path, start, finish, until, arguments, whole, refuse_difference
-):
+def test_killed_run_goes_on_to_the_same_bits(kind, kills, tmp_path, start, finish, whole):
     """Kills at random moments: one in four as it starts, the others soon after a new checkpoint, so
     that every run gets on. Where a checkpoint is due at every look, the run is writing one most of
     the time. What stood there before stays until the new result is whole; a run that ends before it

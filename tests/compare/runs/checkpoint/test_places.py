@@ -3,8 +3,11 @@
 import shutil
 import signal
 import subprocess
+from contextlib import suppress
 
 import pytest
+
+from tests.compare.runs.checkpoint.commands import arguments, is_locked, refuse_difference, until
 
 SHORT = ("--set", "time.duration=4e-3")
 
@@ -23,15 +26,13 @@ def disk(tmp_path):
 
 def fill(place):
     filler = place / "filler"
-    with filler.open("wb", buffering=0) as file:
+    with filler.open("wb", buffering=0) as file, suppress(OSError):
         while True:
-            try:
-                file.write(bytes(4096))
-            except OSError:
-                return filler
+            file.write(bytes(4096))
+    return filler
 
 
-def test_full_or_read_only_disk_leaves_the_old_result(disk, said, arguments):
+def test_full_or_read_only_disk_leaves_the_old_result(disk, said):
     """The new one has no room; what is read-only is said before anything is run."""
     run, result = arguments("axial", disk, *SHORT), disk / "dem.nc"
     assert said(*run) == []
@@ -50,9 +51,7 @@ def test_full_or_read_only_disk_leaves_the_old_result(disk, said, arguments):
     assert result.read_bytes() == before
 
 
-def test_full_disk_costs_a_checkpoint_but_not_the_run(
-    disk, start, finish, until, arguments, whole, refuse_difference
-):
+def test_full_disk_costs_a_checkpoint_but_not_the_run(disk, start, finish, whole):
     """It is said once; when there is room again, checkpoints are there again."""
     filler = fill(disk)
     run = start(*arguments("axial", disk, "--checkpoint-every", "0.001"))
@@ -64,7 +63,7 @@ def test_full_disk_costs_a_checkpoint_but_not_the_run(
     refuse_difference(disk / "dem.nc", whole("axial"))
 
 
-def test_result_that_cannot_be_replaced_is_refused_before_the_run(tmp_path, said, arguments):
+def test_result_that_cannot_be_replaced_is_refused_before_the_run(tmp_path, said):
     """Not when hours have passed: a protected file, and a folder in its place."""
     folder, protected = (tmp_path / name / "dem.nc" for name in ("a", "b"))
     folder.mkdir(parents=True)
@@ -86,7 +85,6 @@ def test_result_that_cannot_be_replaced_is_refused_before_the_run(tmp_path, said
 
 
 def test_full_standard_output_is_one_line(start, finish):
-    """The table has nowhere to go."""
     with open("/dev/full", "w") as full:
         process = start("list", out=full)
         code, (line,) = finish(process)
@@ -94,7 +92,7 @@ def test_full_standard_output_is_one_line(start, finish):
 
 
 def test_second_run_into_a_folder_is_refused_until_the_first_has_ended(
-    tmp_path, start, said, finish, until, arguments, is_locked
+    tmp_path, start, said, finish
 ):
     """Results of two runs do not mix. The system releases the lock of a killed run."""
     for end in (signal.SIGCONT, signal.SIGKILL):
@@ -109,7 +107,7 @@ def test_second_run_into_a_folder_is_refused_until_the_first_has_ended(
         assert said(*arguments("axial", out, *SHORT, "--fresh")) == []
 
 
-def test_folder_of_a_refused_run_is_not_made(tmp_path, said, arguments):
+def test_folder_of_a_refused_run_is_not_made(tmp_path, said):
     """A step above the critical one is found when the folder is held already."""
     out = tmp_path / "new" / "folder"
     refused = arguments("axial", out, "--set", "numerics.dem.step_fraction=1.5")

@@ -11,6 +11,7 @@ import xarray as xr
 
 from jointwave.compare.runs.checkpoint.signals import Ended, Signals
 from jointwave.compare.scenes import find
+from tests.compare.runs.checkpoint.commands import arguments, is_locked, refuse_difference, until
 
 EVERY = ("--checkpoint-every", "0.01")
 
@@ -23,9 +24,7 @@ def members(group):
     return [args for gid, state, args in found if gid == str(group) and state[0] != "Z"]
 
 
-def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
-    tmp_path, stopped, said, arguments, whole, refuse_difference
-):
+def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(tmp_path, stopped, said, whole):
     """One line; the waveforms until then are those of the whole run; --resume ends with the rest,
     and nothing but the result is left."""
     out, undisturbed = tmp_path / "out", whole("axial")
@@ -43,9 +42,7 @@ def test_run_that_is_stopped_keeps_what_is_there_and_goes_on(
     assert {p.name for p in out.iterdir()} == {p.name for p in undisturbed.parent.iterdir()}
 
 
-def test_processes_that_share_a_run_stop_together(
-    tmp_path, start, finish, until, arguments, whole, refuse_difference
-):
+def test_processes_that_share_a_run_stop_together(tmp_path, start, finish, whole):
     """A signal that reaches one of two stops both, at the same sample."""
     out = tmp_path / "out"
     run = start(*arguments("shared", out, *EVERY), ranks=2)
@@ -60,9 +57,7 @@ def test_processes_that_share_a_run_stop_together(
     refuse_difference(out / whole("shared").name, whole("shared"))
 
 
-def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
-    tmp_path, stopped, said, arguments
-):
+def test_resume_goes_on_with_the_first_variant_that_is_not_whole(tmp_path, stopped, said):
     """Of several runs those that ended stay; the one that was killed goes on."""
     text = find("guo-li-2002/fig-03").read_text(encoding="utf-8")
     two, (first, second, *_) = tmp_path / "two.toml", text.split("[[variants]]")
@@ -85,9 +80,7 @@ def test_resume_goes_on_with_the_first_variant_that_is_not_whole(
         (("run", "guo-li-2002/fig-03", "--engine", "exact"), signal.SIGINT),
     ],
 )
-def test_what_has_no_checkpoints_ends_in_a_line(
-    command, number, tmp_path, start, finish, until, is_locked
-):
+def test_what_has_no_checkpoints_ends_in_a_line(command, number, tmp_path, start, finish):
     """Ctrl-C reaches the workers too, SIGTERM does not: neither says anything, none is left."""
     out = tmp_path / "out"
     process = start(*command, "--out", out)
@@ -99,16 +92,13 @@ def test_what_has_no_checkpoints_ends_in_a_line(
         process.send_signal(number)
     code, said = finish(process)
     assert code == 128 + number and len(said) == 1
-    for _ in range(1200):  # a minute, for a machine that has much else to do
-        left = members(process.pid)
-        if not left:
-            break
+    end = time.monotonic() + 60.0  # for a machine that has much else to do
+    while left := members(process.pid):
+        assert time.monotonic() < end, left
         time.sleep(0.05)
-    assert not left
 
 
 def test_second_signal_does_not_wait(monkeypatch):
-    """The first signal waits for the next check; a second one ends the program immediately."""
     monkeypatch.setattr(signal, "signal", lambda *handler: None)
     signals = Signals(patient=True)
     signals._arrived(signal.SIGINT, None)
