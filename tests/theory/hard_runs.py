@@ -45,11 +45,8 @@ def marked(schemes, slow=CROSSED):
 
 
 class HardRun:
-    """A scene with changes on one engine by one scheme.
-
-    Changes have dotted keys; `step` and `allow` are the step_fraction and allow_unstable of the
-    engine.
-    """
+    """A scene with changes on one engine by one scheme. Changes have dotted keys; `step` and
+    `allow` are the step_fraction and allow_unstable of the engine."""
 
     def __init__(self, engine, scheme, changes=None, scene=SHORT, variant=""):
         self.engine, self.scheme, self.where = ENGINES[engine], scheme, (find(scene), variant)

@@ -109,7 +109,6 @@ def test_deformable_rock_has_them_at_all_angles(incidence, joints):
         (MASS, {}, {"incidence": "SH"}, r"incidence = 'SH': must be 'P', 'S' or 'SV'"),
         (MASS, {}, {"frequency": 0.0}, r"frequency = 0.0: must be positive, Hz"),
         (MASS, {}, {"solvers": "dam"}, r"solvers = 'dam': must be of exact, dem,"),
-        (MASS, {"joint_sets.0.friction_angle": 30.0}, {}, "'joint' can slip"),
         ("rock-mass/brickwork", {}, {}, "joints are not parallel"),
         ("rock-mass/layers", {}, {}, "regions differ in rock"),
         (PILLAR, {}, {}, "has no transmission by angle: it is a pillar"),

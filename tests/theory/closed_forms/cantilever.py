@@ -14,10 +14,8 @@ import numpy as np
 def deflection(
     block_count: int, spacing: float, weight: float, shear: float, bending: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the deflection (m) and the rotation (rad) of every block, float arrays [N].
-
-    spacing d in m, weight m g of a block in N, shear k_s in N/m, bending k_b in N m.
-    """
+    """Return the deflection (m) and the rotation (rad) of every block, float arrays [N]. spacing d
+    in m, weight m g of a block in N, shear k_s in N/m, bending k_b in N m."""
     j = np.arange(1, block_count + 1)
     softness = np.where(j < block_count, 1.0, 0.5)
     slip = softness * j * weight / shear

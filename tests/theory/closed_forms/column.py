@@ -19,10 +19,8 @@ TERMS = 60  # of the series: the next one is below 1e-12
 
 
 def love_rayleigh(poisson: float, wave_number: float, side: float, dim: int = 3) -> float:
-    """Return 1 - c / sqrt(E/rho) for long waves: nu^2 k^2 r_p^2 / 2.
-
-    wave_number k in 1/m, side a in m; dim 3 the column, 2 the strip in plane stress.
-    """
+    """Return 1 - c / sqrt(E/rho) for long waves: nu^2 k^2 r_p^2 / 2. wave_number k in 1/m, side a
+    in m; dim 3 the column, 2 the strip in plane stress."""
     radius = side**2 * (1 / 6 if dim == 3 else 1 / 12)
     return poisson**2 * wave_number**2 * radius / 2
 

@@ -8,9 +8,7 @@ from jointwave.compare.exact.blocks.system import Contacts, relative, resistance
 
 def frequencies(stiffness: float, mass: float, block_count: int) -> np.ndarray:
     """Return the chain's N natural frequencies (rad/s), undamped, free ends; the first is rigid.
-
-    stiffness in N/m, mass in kg; or of torsion in N m and kg m2.
-    """
+    stiffness in N/m, mass in kg; or of torsion in N m and kg m2."""
     n = np.arange(block_count)
     return 2 * np.sqrt(stiffness / mass) * np.sin(n * np.pi / (2 * block_count))
 

@@ -46,10 +46,8 @@ def of_modes(
 
 
 def modes(mass: np.ndarray, root: np.ndarray) -> Modes:
-    """Return the modes of the masses [n] and the stiffness K = root^T root, root [m, n].
-
-    The singular values of root M^{-1/2} give omega itself, so that low modes lose no digits.
-    """
+    """Return the modes of the masses [n] and the stiffness K = root^T root, root [m, n]. The
+    singular values of root M^{-1/2} give omega itself, so that low modes lose no digits."""
     _, omega, shapes = np.linalg.svd(root / np.sqrt(mass))
     omega = np.pad(omega, (0, max(0, len(mass) - len(omega))))
     omega[omega < RIGID * omega.max()] = 0

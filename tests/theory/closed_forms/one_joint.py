@@ -8,10 +8,8 @@ import numpy as np
 def coefficients(
     omega: np.ndarray | float, stiffness: float, impedance: float, viscosity: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the complex T and R of stress at omega (rad/s).
-
-    stiffness K in Pa/m, impedance Z in Pa s/m, viscosity c_j = K eta in Pa s/m.
-    """
+    """Return the complex T and R of stress at omega (rad/s). stiffness K in Pa/m, impedance Z in Pa
+    s/m, viscosity c_j = K eta in Pa s/m."""
     omega = np.asarray(omega)
     transmitted = 1 / (1 + 1j * omega * impedance / (2 * (stiffness + 1j * omega * viscosity)))
     return transmitted, transmitted - 1

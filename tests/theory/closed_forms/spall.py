@@ -69,10 +69,8 @@ def spall(
 
 
 def jointed_spall(scene: Scene) -> Spall | None:
-    """Return the first failure of the scene's deformable rock at one of its joints, to a sample.
-
-    It is linear until then, so the exact stress at all joints holds.
-    """
+    """Return the first failure of the scene's deformable rock at one of its joints, to a sample. It
+    is linear until then, so the exact stress at all joints holds."""
     p, times = calibrate(scene), sample_times(scene)
     bar, joints = bar_of(scene, resolved=True), p.joint_y.tolist()
     load, period = late_load(scene, "jointed"), scene.load.time_scale

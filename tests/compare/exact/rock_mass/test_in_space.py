@@ -167,8 +167,8 @@ def test_a_free_face_along_the_joints_sends_waves_back(rock_mass, joint, wave, k
 
 
 def test_why_waves_do_not_enter_regions_is_said(rock_mass, wave):
-    """Soft rock above sends S waves down at 25 degrees, from which P waves in the rock decay, unless
-    particles move along the boundary."""
+    """Soft rock above sends S waves down at 25 degrees, from which P waves in the rock decay,
+    unless particles move along the boundary."""
     down = {"direction": [0.3, 0.3, -(0.82**0.5)], "polarisation": [0.0, 0.0, 1.0]}
     changes = {
         "domain": {"size": [60.0, 60.0, 30.0]},
