@@ -46,6 +46,8 @@ FIELDS = dict(record__fields=1e-5, time__duration=1e-2, record__interval=1e-5)
 FOURTH = dict(numerics__dem__scheme="fourth-order", numerics__dem__step_fraction=3e-7)
 ONCE = dict(record__interval=1.0, time__duration=9.0)
 OPENS = dict(joints__tension=False, record__interval=1e-6)
+SHARP = dict(load__period=1e-12, record__interval=1e-5)
+BRIEF = dict(load__period=1e-9, record__interval=1e-4)
 
 #: What is too large for 0.1 GB, the solver, and the key that decides it or what of it is large.
 LARGE = {
@@ -57,18 +59,10 @@ LARGE = {
     "steps of fourth order": (FOURTH, "dem", FRACTION),
     "snapshots": (FIELDS | dict(pillar__block=0.025), "dem", "record.fields"),
     "elements": (FINE, "continuum-jointed", ELEMENTS),
-    "elements that a short period asks for": (
-        dict(load__period=1e-12, record__interval=1e-5),
-        "continuum-equivalent",
-        ELEMENTS,
-    ),
+    "elements that a short period asks for": (SHARP, "continuum-equivalent", ELEMENTS),
     "cells of a column": (THICK, "continuum-jointed", "numerics.continuum.elements_across"),
     "samples of an exact solution": (LONG | {"time__duration": 3.0}, "lattice", "record.interval"),
-    "a short load": (
-        dict(load__period=1e-9, record__interval=1e-4),
-        "jointed-bar",
-        "jointed-bar: .*instants of the load",
-    ),
+    "a short load": (BRIEF, "jointed-bar", "jointed-bar: .*instants of the load"),
     "an integral": (ONCE, "lattice", "lattice: .*points of integration"),
     "states": (OPENS, "no-tension-chain", "no-tension-chain: .*states of"),
 }

@@ -134,40 +134,27 @@ BESIDE = {"domain": BOX, "record": {"points": [[10.0, 25.0, 1.5]]}, "joint_sets"
 UP = {"kind": "P", "direction": [0.0, 0.0, 1.0], "shape": "step", "amplitude": 1e6}
 BOTTOM = {"waves": [UP], "boundaries": {"bottom": "quiet"}} | BESIDE
 IN_SPACE = FORCE | {"at": [10.0, 20.0, 1.5], "direction": [0.6, 0.8, 0.0]}
-HOLE = [[10.0, 20.0, 1.0], [11.0, 21.0, 2.0]]
+HOLED = BOX | {"openings": [[[10.0, 20.0, 1.0], [11.0, 21.0, 2.0]]]}
+SHEARS = {"kind": "S", "polarisation": [1.0, 0.0, 0.0]}
+AROUND = {k: v for k, v in PRESSURE.items() if k != "side"} | {"opening": 0}
+FAR = "points[0] = [10, 25, 1.5]"
+
+
+def loaded(load, **more):
+    return {"waves": [], "loads": [load]} | more
+
+
 #: Receivers that are reached at a time by the speed of the wave, or that of P from where a load
 #: acts; a Ricker wavelet is felt from 0.646 T on.
 REACHED = {
     "a wavelet": ({}, "points[1] = [10, 25]", 0.6456 * 0.005 + 25 / P),
-    "a force": ({"waves": [], "loads": [FORCE]}, "points[1] = [10, 25]", 20 / P),
-    "a side": (
-        {"waves": [], "loads": [PRESSURE], "boundaries__left": "free"},
-        "points[0] = [10, 5]",
-        10 / P,
-    ),
-    "P in space": (BOTTOM, "points[0] = [10, 25, 1.5]", 1.5 / P),
-    "S in space": (
-        BOTTOM | {"waves": [UP | {"kind": "S", "polarisation": [1.0, 0.0, 0.0]}]},
-        "points[0] = [10, 25, 1.5]",
-        1.5 / S,
-    ),
-    "a force in space": (
-        BESIDE | {"waves": [], "boundaries": {}, "loads": [IN_SPACE]},
-        "points[0] = [10, 25, 1.5]",
-        5 / P,
-    ),
-    "a side in space": (
-        BESIDE | {"waves": [], "boundaries": {}, "loads": [PRESSURE | {"side": "back"}]},
-        "points[0] = [10, 25, 1.5]",
-        5 / P,
-    ),
-    "an opening in space": (
-        BESIDE
-        | {"waves": [], "boundaries": {}, "domain": BOX | {"openings": [HOLE]}}
-        | {"loads": [{k: v for k, v in PRESSURE.items() if k != "side"} | {"opening": 0}]},
-        "points[0] = [10, 25, 1.5]",
-        4 / P,
-    ),
+    "a force": (loaded(FORCE), "points[1] = [10, 25]", 20 / P),
+    "a side": (loaded(PRESSURE, boundaries__left="free"), "points[0] = [10, 5]", 10 / P),
+    "P in space": (BOTTOM, FAR, 1.5 / P),
+    "S in space": (BOTTOM | {"waves": [UP | SHEARS]}, FAR, 1.5 / S),
+    "a force in space": (BESIDE | loaded(IN_SPACE, boundaries={}), FAR, 5 / P),
+    "a side in space": (BESIDE | loaded(PRESSURE | {"side": "back"}, boundaries={}), FAR, 5 / P),
+    "an opening in space": (BESIDE | loaded(AROUND, boundaries={}, domain=HOLED), FAR, 4 / P),
 }
 
 

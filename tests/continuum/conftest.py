@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from jointwave.continuum.scene import SceneBody, body_of
+from jointwave.continuum.scene import body_of
 from tests.continuum import bodies
 
 SHORT: dict[str, Any] = {
@@ -24,12 +24,8 @@ def rock_mass():
 
 @pytest.fixture(scope="session")
 def made(rock_mass):
-    """Return a function that gives the body of a scene, all of its keys as for `rock_mass`."""
-
-    def build(*joints, model="jointed", rock=None, **changes) -> SceneBody:
-        return body_of(rock_mass(*joints, **changes), model, rock)
-
-    return build
+    """Return a function that gives the body of a scene, keys as for `rock_mass`."""
+    return lambda *joints, **changes: body_of(rock_mass(*joints, **changes))
 
 
 @pytest.fixture

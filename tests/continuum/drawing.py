@@ -66,19 +66,12 @@ def drawn(
 def _block(geo, dim, side, lower, upper):
     """Add one block between two joints."""
     half = side / 2
-    depths = [0.0] if dim == 2 else [-half, half]
     ring = [(-half, lower[0]), (half, lower[1]), (half, upper[1]), (-half, upper[0])]
-    rings = [[geo.addPoint(x, y, z) for x, y in ring] for z in depths]
-    loops = [[geo.addLine(r[i], r[(i + 1) % 4]) for i in range(4)] for r in rings]
-    flat = [geo.addPlaneSurface([geo.addCurveLoop(loop)]) for loop in loops]
-    if dim == 2:
-        return
-    rails = [geo.addLine(*pair) for pair in zip(*rings, strict=True)]
-    for i in range(4):
-        after = (i + 1) % 4
-        loop = geo.addCurveLoop([loops[0][i], rails[after], -loops[1][i], -rails[i]])
-        flat.append(geo.addPlaneSurface([loop]))
-    geo.addVolume([geo.addSurfaceLoop(flat)])
+    points = [geo.addPoint(x, y, -half * (dim - 2)) for x, y in ring]
+    lines = [geo.addLine(points[i], points[(i + 1) % 4]) for i in range(4)]
+    face = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+    if dim == 3:
+        geo.extrude([(2, face)], 0, 0, side)
 
 
 def _transfinite(model, dim, elements, recombine):

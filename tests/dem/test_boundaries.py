@@ -6,7 +6,6 @@ from itertools import product
 import numpy as np
 import pytest
 
-from jointwave import cases
 from jointwave.cases.geometry.blocks import blocks_of
 from jointwave.cases.geometry.cell_complex import box
 from jointwave.cases.geometry.cut import cut, one_plane
@@ -26,6 +25,7 @@ from jointwave.dem.sides.boundaries import (
 )
 from jointwave.dem.sides.domain import incoming, load_pattern
 from jointwave.dem.sides.loads import Loads
+from tests.dem.rocks import rock
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")
@@ -140,20 +140,11 @@ def test_a_wave_pushes_a_quiet_side_by_twice_its_impedance(dim, kind):
 def test_loads_of_a_scene_in_space():
     """A pressure on the top, a force at a point of the second block, a compliant base below."""
     step, at = {"amplitude": 2.0, "shape": "step"}, [2.5, 0.5, 1.0]
-    joint = {"name": "cut", "dip": 90.0, "dip_direction": 90.0, "through": [1.5, 1.0, 1.0]}
+    joint = {"dip": 90.0, "dip_direction": 90.0, "through": [1.5, 1.0, 1.0]}
     force = {"kind": "force", "quantity": "force", "at": at, "direction": [0.0, 0.6, 0.8]}
     base = {"kind": "base", "quantity": "velocity", "side": "bottom", "direction": [1, 0, 0]}
-    tables = {
-        "title": "box",
-        "domain": {"size": SIZE.tolist()},
-        "rock": {"density": 2500.0, "intact_modulus": 4e10},
-        "joint_sets": [joint | {"normal_stiffness": 1e10, "shear_stiffness": 4e9}],
-        "boundaries": {"bottom": "quiet"},
-        "loads": [step | one for one in ({"kind": "pressure", "side": "top"}, force, base)],
-        "time": {"duration": 0.1},
-        "record": {"points": [[1.0, 1.0, 1.5]]},
-    }
-    scene = cases.load_tables(tables)
+    pushes = [step | one for one in ({"kind": "pressure", "side": "top"}, force, base)]
+    scene = rock(SIZE.tolist(), [joint], loads=pushes, boundaries={"bottom": "quiet"})
     blocks, sides = blocks_of_scene(scene), shape_of(scene.domain).sides
     patterns = [load_pattern(scene, blocks, sides, one) for one in scene.pushes]
     loads = Loads(np.arange(2), patterns, [], CLOCK, freedoms(3, 3))

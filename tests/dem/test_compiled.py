@@ -2,33 +2,22 @@
 
 import pytest
 
-from jointwave.cases import load_tables
 from jointwave.dem import simulate
 from jointwave.dem.kernel import leapfrog
+from tests.dem.rocks import rock
 
 SEVERAL = r" <\d+ x double>"  # of several contacts at once
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"
 SLIP = {"friction_angle": 20.0}
-NORMALS = {2: [(0.0, 0.0), (90.0, 0.0)], 3: [(0.0, 0.0), (90.0, 0.0), (90.0, 90.0)]}
+UP, EAST, NORTH = {"dip": 0.0}, {"dip": 90.0, "dip_direction": 90.0}, {"dip": 90.0}
+ATTITUDES = {2: [UP, NORTH], 3: [UP | {"dip_direction": 0.0}, EAST, NORTH | {"dip_direction": 0.0}]}
 
 
 def lattice(dim=2, joints=(), **tables):
     """Return free blocks of 1 m without a ledger, 4 along each axis; tables added."""
-    own = {
-        "title": "a lattice",
-        "domain": {"size": [4.0] * dim},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10},
-        "joint_sets": [
-            {"name": f"set {k}", "dip": dip, "spacing": 1.0, "through": [0.0] * dim}
-            | ({"dip_direction": way} if dim == 3 else {})
-            | {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
-            | dict(joints)
-            for k, (dip, way) in enumerate(NORMALS[dim])
-        ],
-        "time": {"duration": 1e-3},
-        "record": {"points": [[0.5] * dim], "energy": False},
-    }
-    return load_tables(own | tables)
+    sets = [one | {"spacing": 1.0, "through": [0.0] * dim} for one in ATTITUDES[dim]]
+    bare = {"record": {"points": [[0.5] * dim], "energy": False}}
+    return rock([4.0] * dim, sets, joints, **bare | tables)
 
 
 @pytest.fixture

@@ -3,32 +3,21 @@
 import numpy as np
 import pytest
 
-from jointwave.cases import load_tables
 from jointwave.dem.prepare import prepared
+from tests.dem.rocks import rock
 
-ASKEW = {2: [(20.0,), (75.0,), (140.0,)], 3: [(15.0, 40.0), (80.0, 100.0), (60.0, 200.0)]}
+ASKEW = [{"dip": 15.0, "dip_direction": 40.0}, {"dip": 80.0, "dip_direction": 100.0}]
+ASKEW += [{"dip": 60.0, "dip_direction": 200.0}]
+ATTITUDES = {2: [{"dip": dip} for dip in (20.0, 75.0, 140.0)], 3: ASKEW}
 
 
 def blocks_of(dim, rule):
     """Return blocks between joints without tension, on a fixed bottom, most askew to the sides."""
-    law = {"spacing": 1.3, "tension": False, "normal_stiffness": 1e10, "shear_stiffness": 5e9}
-    tables = {
-        "title": "blocks",
-        "domain": {"size": [5.2, 2.6, 3.9][:dim], "slivers": "merge", "least_width": 0.03},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [
-            {"name": str(k), "through": [1.3] * dim}
-            | dict(zip(("dip", "dip_direction"), one, strict=False))
-            | law
-            | rule
-            for k, one in enumerate(ASKEW[dim])
-        ],
-        "boundaries": {"bottom": "fixed"},
-        "gravity": {},
-        "time": {"duration": 1e-3},
-        "record": {"points": [[2.1, 2.2, 1.4][:dim]]},
-    }
-    return prepared(load_tables(tables)).blocks
+    law = {"spacing": 1.3, "through": [1.3] * dim, "tension": False}
+    size = [5.2, 2.6, 3.9][:dim]
+    domain = {"size": size, "slivers": "merge", "least_width": 0.03}
+    held = {"boundaries": {"bottom": "fixed"}, "gravity": {}}
+    return prepared(rock(size, ATTITUDES[dim], law | rule, domain=domain, **held)).blocks
 
 
 @pytest.mark.parametrize("rule", [{}, {"point_rule": "gauss"}], ids=["vertices", "gauss"])

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from closed_forms.bloch import leapfrog, modes, periodic
-from jointwave.cases import load_tables
 from jointwave.cases.partition.scene import blocks_of_domain
 from jointwave.cases.schema.domain import Domain
 from jointwave.dem.kernel.leapfrog import march
 from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
+from tests.dem.rocks import rock
 
 SIDE, DENSITY, STIFFNESS = 2.0, 2500.0, (3e9, 1.1e9)  # m, kg/m3; normal and in shear, Pa/m
 COUNT = {2: 12, 3: 6}
@@ -31,19 +31,16 @@ ACROSS = (("left", "right"), ("bottom", "top"), ("front", "back"))
 def system_of(size, laws, pairs):
     """Return blocks of these joints up, to the east and to the north between pairs of periodic
     sides, in rock so stiff that joints have their own stiffness."""
-    sets = [one | law for one, law in zip(ATTITUDES, laws, strict=False)]
-    if len(size) == 2:
+    dim, sets = len(size), [one | law for one, law in zip(ATTITUDES, laws, strict=False)]
+    if dim == 2:
         sets = [{k: v for k, v in one.items() if k != "dip_direction"} for one in sets]
     tables = {
-        "title": "blocks",
-        "domain": {"size": size},
         "rock": {"density": DENSITY, "intact_modulus": 1e25, "intact_poisson": 0.2},
-        "joint_sets": [one | {"through": [0.0] * len(size)} for one in sets],
         "boundaries": dict.fromkeys(sum(pairs, ()), "periodic"),
         "time": {"duration": 1.0},
         "record": {"points": [[x / 2.1 for x in size]], "interval": 1.0},
     }
-    return prepared(load_tables(tables))
+    return prepared(rock(size, sets, {"through": [0.0] * dim}, **tables))
 
 
 def law_of(name, stiffness, **keys):

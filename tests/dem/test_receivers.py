@@ -14,7 +14,7 @@ from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.geometry.measure import frames_of
 from jointwave.cases.geometry.sets import PlaneSet, cut_by_sets
 from jointwave.cases.partition.scene import blocks_of_scene
-from jointwave.cases.read import load_tables
+from jointwave.compare.exact.blocks.system import carried
 from jointwave.compare.runs.output import write_pvd
 from jointwave.dem.blocks.rock_mass import blocks_of as rigid_blocks
 from jointwave.dem.contacts.faces import Contacts
@@ -31,22 +31,12 @@ from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.dataset import dataset
 from jointwave.results.snapshots import SnapshotRecorder, snapshots_of
 from jointwave.results.stress import stress_components
+from tests.dem.rocks import rock
 
 WALL = Path(__file__).parents[2] / "cases/rock-mass/masonry-wall.toml"
 SIZE, TOLERANCE = np.array([6.0, 5.0, 4.0]), 1e-9
 DIMENSIONS = pytest.mark.parametrize("dim", (1, 2, 3))
 ROTATIONS = {1: 0, 2: 1, 3: 3}
-
-
-def turning(arm, freedoms):
-    """What rotations add to the motion at the ends of arms: phi x r, matrices [..., d, F]."""
-    dim = arm.shape[-1]
-    found = np.zeros((*arm.shape, freedoms))
-    if dim == 2:
-        found[..., 0, 2], found[..., 1, 2] = -arm[..., 1], arm[..., 0]
-    elif dim == 3:
-        found[..., 3:] = -np.cross(arm[..., None, :], np.eye(3)).swapaxes(-1, -2)
-    return found
 
 
 def blocks(dim, tilt=0.2):
@@ -128,7 +118,7 @@ def test_points_between_joints_move_with_their_rigid_block(dim):
     b, phi = draw(size=dim), draw(size=freedoms - dim)
 
     def rigid(x):
-        return b + turning(x, freedoms)[..., dim:] @ phi
+        return b + carried(x, freedoms)[:, :dim, dim:] @ phi
 
     motion = np.concatenate([rigid(found.centroid), np.tile(phi, (found.count, 1))], axis=1)
     moved = at_points(receivers, motion[receivers.places, :, None])
@@ -138,8 +128,7 @@ def test_points_between_joints_move_with_their_rigid_block(dim):
     other = draw(size=(found.count, freedoms, 1))  # blocks move against each other
     moved = at_points(receivers, other[receivers.places])[20:, 0]
     i, j = (
-        other[k, :dim, 0]
-        + np.einsum("naf,nf->na", turning(on - found.centroid[k], freedoms), other[k, :, 0])
+        np.einsum("naf,nf->na", carried(on - found.centroid[k], freedoms)[:, :dim], other[k, :, 0])
         for k in found.contacts.blocks[:5].T
     )
     np.testing.assert_allclose(moved, (i + j) / 2, rtol=0, atol=1e-13)
@@ -201,18 +190,15 @@ def test_a_block_that_a_force_turns_has_its_inertia_in_its_mean_stress(depth):
     across = [x / 2 for x in depth]
     push = {"kind": "force", "quantity": "force", "shape": "half-sine", "amplitude": 1e5}
     push |= {"at": [1.0, *across, 5.0], "direction": [1.0, *(0 * x for x in across), 0.0]}
-    loose = {"name": "loose", "dip": 0.0, "through": [0.0, *across, 1.0]}
-    tables = {
-        "title": "a loose block",
-        "domain": {"size": [1.0, *depth, 5.0]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [loose | {"normal_stiffness": 1e4, "shear_stiffness": 1e4}],
-        "boundaries": {"bottom": "fixed"},
-        "loads": [push | {"period": 0.1}],
-        "time": {"duration": 0.02},
-        "record": {"points": [[0.3, *across, 1.9]], "interval": 1e-3},
-    }
-    found = simulate(load_tables(tables))
+    loose = {"dip": 0.0, "through": [0.0, *across, 1.0]}
+    scene = rock(
+        *([1.0, *depth, 5.0], [loose], {"normal_stiffness": 1e4, "shear_stiffness": 1e4}),
+        boundaries={"bottom": "fixed"},
+        loads=[push | {"period": 0.1}],
+        time={"duration": 0.02},
+        record={"points": [[0.3, *across, 1.9]], "interval": 1e-3},
+    )
+    found = simulate(scene)
     pushed, volume = 1e5 * np.sin(np.pi * found.time / 0.05), 4.0 * np.prod(depth)
     for component, sums in {"xz" if depth else "xy": 4 / 34, "xx": 1 / 2}.items():
         stress = -found.stress.sel(stress_component=component)[0]

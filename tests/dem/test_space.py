@@ -9,34 +9,26 @@ from jointwave.dem import simulate
 from jointwave.dem.kernel.leapfrog import march
 from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
+from tests.dem.rocks import rock
 
-LAW = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
 DAMPED, SLIPS = {"damping_ratio": 0.1}, {"friction_angle": 20.0, "tension": False}
-#: Dip, dip direction and a place of joints, none of which are parallel.
+STIFF = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}
+#: Dip and dip direction of joints, none of which are parallel.
 ATTITUDES = [(0.0, 0.0), (70.0, 80.0), (80.0, 350.0)]
+PUSH = {"kind": "pressure", "side": "left", "shape": "ricker", "amplitude": 4e4, "period": 2e-3}
 
 
 def oblique(law=(), **changes):
-    """Return 4 m x 3 m x 2 m in blocks between four sets, loaded on its left; tables changed."""
+    """Return 4 m x 3 m x 2 m in blocks between three sets, loaded on its left; tables changed."""
+    sets = [{"dip": dip, "dip_direction": way, "spacing": 0.9} for dip, way in ATTITUDES]
     tables = {
-        "title": "oblique blocks",
         "domain": {"size": [4.0, 3.0, 2.0], "slivers": "merge", "least_width": 0.03},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [
-            {"name": f"set {k}", "dip": dip, "dip_direction": way, "spacing": 0.9}
-            | {"through": [2.03, 1.51, 0.97]}
-            | LAW
-            | dict(law)
-            for k, (dip, way) in enumerate(ATTITUDES)
-        ],
-        "loads": [
-            {"kind": "pressure", "side": "left", "shape": "ricker", "amplitude": 4e4}
-            | {"period": 2e-3}
-        ],
+        "loads": [PUSH],
         "time": {"duration": 4e-3},
         "record": {"points": [[2.2, 1.4, 0.8]], "interval": 5e-5, "energy": True},
     }
-    return load_tables(tables | changes)
+    law = STIFF | {"through": [2.03, 1.51, 0.97]} | dict(law)
+    return rock([4.0, 3.0, 2.0], sets, law, **tables | changes)
 
 
 def moving(scene):
@@ -95,37 +87,29 @@ def in_plane(space, spaced):
     """Return a scene of joints that are alone and slip, or of two linear sets in rock that is cut,
     in the plane, or in space 1 m deep between rollers: x is x, and y is z."""
     places = [(30.0, 3.1, 4.2), (30.0, 7.7, 5.1), (-55.0, 4.3, 6.2), (-55.0, 8.6, 3.9)]
-    sets, law = [], {"spacing": 3.0} if spaced else SLIPS
-    for k, (dip, x, y) in enumerate(places[:: 1 + spaced]):
-        attitude = {"dip": dip, "through": [x, y]}
-        if space:
-            way = 270.0 if dip > 0 else 90.0
-            attitude = {"dip": abs(dip), "dip_direction": way, "through": [x, 0.5, y]}
-        sets.append({"name": f"joint {k}"} | attitude | LAW | law)
-    depth = [1.0] if space else []
-    sides = {"left": "quiet", "bottom": "roller"} | (
-        {"front": "roller", "back": "roller"} if space else {}
-    )
-    return load_tables(
-        {
-            "title": "a section",
-            "domain": {"size": [12.0, *depth, 10.0]},
-            "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-            "joint_sets": sets,
-            "boundaries": sides,
-            "loads": [
-                {"kind": "pressure", "side": "right", "shape": "ricker", "amplitude": 2e5}
-                | {"period": 0.1}
-            ],
-            "time": {"duration": 0.1},
-            "numerics": {"dem": {"block": 1.5} if spaced else {}},
-            "record": {
-                "points": [[2.0, *([0.5] * space), 2.0], [10.0, *([0.5] * space), 8.0]],
-                "joints": [[7.7, *([0.5] * space), 5.1]],
-                "interval": 2e-5,  # the step of both
-                "energy": True,
-            },
-        }
+    if spaced:
+        places = places[::2]
+    sets = [{"dip": dip, "through": [x, y]} for dip, x, y in places]
+    sides, depth = {"left": "quiet", "bottom": "roller"}, [0.5] * space
+    if space:
+        sides |= {"front": "roller", "back": "roller"}
+        for one, (dip, x, y) in zip(sets, places, strict=True):
+            one |= {"dip_direction": 270.0 if dip > 0 else 90.0, "through": [x, 0.5, y]}
+            one["dip"] = abs(dip)
+    return rock(
+        [12.0, *(2 * y for y in depth), 10.0],
+        sets,
+        STIFF | ({"spacing": 3.0} if spaced else SLIPS),
+        boundaries=sides,
+        loads=[PUSH | {"side": "right", "amplitude": 2e5, "period": 0.1}],
+        time={"duration": 0.1},
+        numerics={"dem": {"block": 1.5} if spaced else {}},
+        record={
+            "points": [[2.0, *depth, 2.0], [10.0, *depth, 8.0]],
+            "joints": [[7.7, *depth, 5.1]],
+            "interval": 2e-5,  # the step of both
+            "energy": True,
+        },
     )
 
 

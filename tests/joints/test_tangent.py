@@ -21,16 +21,13 @@ EPS = np.finfo(float).eps
 SHARE = 1e-5  # step of a central difference, of the length over which the law bends
 
 # What limits the shear traction, by letter: cohesion, friction, residual cohesion, dynamic friction
-# with its weakening distance, dilation (i) with its distance (I). None: no shear.
-# R: friction that depends on rate and state.
-SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw", "fiI", "cfdwiI", "fR", "cfrR")
+# with its weakening distance, dilation (i) with its distance. None: no shear. R: friction that
+# depends on rate and state.
+SHEARS = (None, "", "c", "f", "cf", "cfr", "fdw", "cfrdw", "fi", "cfdwi", "fR", "cfrR")
 COMBINATIONS = [
     *product(("", "dashpots"), ("ties", "no tension", "softening"), SHEARS),
     *product(("", "dashpots"), ("closes", "closes, no tension", "closes, softening"), (None, "cf")),
 ]
-FIELDS = {"iangle": "dilation", "Idistance": "dilation_distance"}
-
-
 some = cache(partial(some, digits=6))
 
 
@@ -52,14 +49,12 @@ def one_law(draw, dashpots, opens, shears):
         wanted = {"cohesion": cohesion, "friction": draw(some(0, 2)), "residual_cohesion": cohesion}
         wanted["dynamic_friction"] = wanted["friction"] * draw(some(0, 0.9))
         wanted["weakening_distance"] = 1e-4 * draw(some(0.1, 10))
-        least = wanted["dynamic_friction"] if "d" in shears else wanted["friction"]
-        wanted["iangle"] = least * draw(some(0, 1))
-        wanted["Idistance"] = 1e-4 * draw(some(0.1, 10))
+        parts.update((name, value) for name, value in wanted.items() if name[0] in shears)
+        if "i" in shears:
+            dilation = parts.get("dynamic_friction", wanted["friction"]) * draw(some(0, 1))
+            parts.update(dilation=dilation, dilation_distance=1e-4 * draw(some(0.1, 10)))
         if "R" in shears:
             parts.update(draw(rated()))
-        parts.update(
-            (FIELDS.get(name, name), value) for name, value in wanted.items() if name[0] in shears
-        )
     law = Law(k, k * eta if dashpots else None, False if "no tension" in opens else None, **parts)
     slips = (0.0, 0.0) if shears is None else (1e-4 * draw(some(-1, 1)), 1e-4 * draw(some(-1, 1)))
     history = Point(before, *slips, cohesion, 1e-4 * draw(some(0, 1)))

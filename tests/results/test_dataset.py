@@ -126,25 +126,15 @@ def test_hash_follows_every_number_and_the_samples_of_a_history(pillar, tmp_path
 
 
 RISE = np.linspace(0, 1, 5)
+RESTS = {"kinetic": 2 * RISE, "elastic": 7 + RISE, "gravity": -3 + 0 * RISE, "work": 3 * RISE}
+SLIDES = {"kinetic": RISE, "friction": 3 * RISE, "gravity": 5 - 4 * RISE, "work": 0 * RISE}
 LEDGERS = {
     "a quarter of the work is missing": ({"kinetic": 3 * RISE, "work": 4 * RISE}, 0.25),
     "closed": ({"kinetic": 3 * RISE, "viscous": RISE, "work": 4 * RISE}, 0.0),
-    "from a static state": (
-        {"kinetic": 2 * RISE, "elastic": 7 + RISE, "gravity": -3 + 0 * RISE, "work": 3 * RISE},
-        0.0,
-    ),
-    "from a static state, with a loss": (
-        {"kinetic": 1.7 * RISE, "elastic": 7 + RISE, "gravity": -3 + 0 * RISE, "work": 3 * RISE},
-        0.1,
-    ),
-    "a block slides down": (
-        {"kinetic": RISE, "friction": 3 * RISE, "gravity": 5 - 4 * RISE, "work": 0 * RISE},
-        0.0,
-    ),
-    "a block slides down, with a loss": (
-        {"kinetic": RISE, "friction": 2 * RISE, "gravity": 5 - 4 * RISE, "work": 0 * RISE},
-        0.25,
-    ),
+    "from a static state": (RESTS, 0.0),
+    "from a static state, with a loss": (RESTS | {"kinetic": 1.7 * RISE}, 0.1),
+    "a block slides down": (SLIDES, 0.0),
+    "a block slides down, with a loss": (SLIDES | {"friction": 2 * RISE}, 0.25),
     "nothing moves": ({"kinetic": 0 * RISE, "work": 0 * RISE}, 0.0),
 }
 

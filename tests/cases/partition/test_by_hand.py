@@ -72,32 +72,22 @@ SQUARES = {"rows": {"dip": 0.0, "spacing": 1.0}, "columns": {"dip": 90.0, "spaci
 TUNNEL = [[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]]
 BENCH = [[6.0, 3.0], [10.0, 3.0], [10.0, 6.0], [6.0, 6.0]]
 SLOPE = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [14.0, 10.0], [8.0, 4.0], [0.0, 4.0]]
+HOLED = {"size": [10.0, 10.0], "openings": [TUNNEL]}
+DIPPING = {"a": {"dip": 35.0, "spacing": 1.0}, "b": {"dip": -50.0, "spacing": 1.0}}
+CUT, AROUND = {"non_convex": "cut"}, [10, 10, 10, 10, 0, 8]
+ALONE = {"far": {"dip": 90.0, "through": [9.0, 5.0]}}
 #: The domain, its joint sets, the number of blocks, and lengths of left, right, bottom, top, the
 #: rest of the outline and openings.
 SIDED = {
-    "one block around a tunnel is cut along its faces": (
-        {"size": [10.0, 10.0], "openings": [TUNNEL], "non_convex": "cut"},
-        {"far": {"dip": 90.0, "through": [9.0, 5.0]}},
-        5,
-        [10, 10, 10, 10, 0, 8],
-    ),
-    "a tunnel between joints needs no cut": (
-        {"size": [10.0, 10.0], "openings": [TUNNEL]},
-        SQUARES,
-        96,
-        [10, 10, 10, 10, 0, 8],
-    ),
+    "one block around a tunnel is cut along its faces": (HOLED | CUT, ALONE, 5, AROUND),
+    "a tunnel between joints needs no cut": (HOLED, SQUARES, 96, AROUND),
     "an opening may open the boundary": (
         {"size": [10.0, 6.0], "openings": [BENCH]},
-        SQUARES,
-        60 - 12,
-        [6, 3, 10, 6, 0, 7],
+        *(SQUARES, 60 - 12, [6, 3, 10, 6, 0, 7]),
     ),
     "a slope is an outline that is not convex": (
-        {"outline": SLOPE, "non_convex": "cut"},
-        {"a": {"dip": 35.0, "spacing": 1.0}, "b": {"dip": -50.0, "spacing": 1.0}},
-        None,
-        [4, 10, 20, 6, 8 + 6 * 2**0.5],
+        {"outline": SLOPE} | CUT,
+        *(DIPPING, None, [4, 10, 20, 6, 8 + 6 * 2**0.5]),
     ),
 }
 

@@ -59,27 +59,18 @@ def test_all_that_a_scene_in_space_may_hold(scene):
 ARCH = [[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [4.0, 3.0], [3.0, 2.0]]
 BOXES = [[[1.0, 1.0, 1.0], [3.0, 3.0, 2.0]], [[3.0, 1.0, 1.0], [5.0, 3.0, 2.0]]]
 GABLE = {"axis": "y", "polygon": [[1.0, 2.0], [5.0, 2.0], [3.0, 3.0]]}
+BOX_OUT = {"openings": [[[6.0, 0.0, 1.0], [4.0, 6.0, 2.0]]]}
+ARCHED = {"prisms": [{"polygon": ARCH, "axis": "y"}], "non_convex": "cut"}
+TOUCHING = {"openings": BOXES, "prisms": [GABLE], "non_convex": "cut"}
 #: Joint sets, the domain, the number of blocks, and volume and walls of openings: a prism has its
 #: polygon, in x and z along y, times the length of its axis; two boxes share a wall, below a gable.
 BLOCKS = {
     "beds": ([BED], {}, 4, 0.0, 0.0),
     "two sets": ([BED, EAST], {}, 16, 0.0, 0.0),
     "brickwork": ([BED, EAST | {"ends_at": ["bed"], "offset": 0.5}], {}, 18, 0.0, 0.0),
-    "a box out of one bed": ([BED], {"openings": [[[6.0, 0.0, 1.0], [4.0, 6.0, 2.0]]]}, 5, 12, 36),
-    "an arch": (
-        [BED],
-        {"prisms": [{"polygon": ARCH, "axis": "y"}], "non_convex": "cut"},
-        None,
-        18.0,
-        6.0 * (4.0 + 2 * 2**0.5),
-    ),
-    "boxes that touch": (
-        [BED],
-        {"openings": BOXES, "prisms": [GABLE], "non_convex": "cut"},
-        None,
-        8.0 + 12.0,
-        None,
-    ),
+    "a box out of one bed": ([BED], BOX_OUT, 5, 12.0, 36.0),
+    "an arch": ([BED], ARCHED, None, 18.0, 6.0 * (4.0 + 2 * 2**0.5)),
+    "boxes that touch": ([BED], TOUCHING, None, 8.0 + 12.0, None),
 }
 
 

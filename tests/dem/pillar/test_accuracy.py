@@ -14,14 +14,13 @@ SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
 DAMPED = [{"y": 20.0, "damping_ratio": 0.03}]
 DOWN = {"direction": [0, 1, 0]}
 SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.02, "quantity": "velocity"}
+RAYLEIGH = {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]}
+HELD, OPEN = {"start": "matched", "end": "fixed"}, {"start": "quiet", "end": "matched"}
 CHAINS = {
     "strongly damped, soft layer": {"soft_layers": SOFT, "joints__damping_ratio": 0.5},
     "quiet start": {"ends": {"start": "quiet", "end": "fixed"}},
     "matched start": {"ends__start": "matched", "ends__end": "matched"},
-    "Rayleigh damping": {
-        "ends": {"start": "matched", "end": "fixed"},
-        "damping__rayleigh": {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]},
-    },
+    "Rayleigh damping": {"ends": HELD, "damping__rayleigh": RAYLEIGH},
     "base moved against the axis, with all linear effects": {
         "ends": {"start": "fixed", "end": "fixed"},
         "load": {**SHAKEN, "direction": [0, -1, 0]},
@@ -35,19 +34,12 @@ LAYER = [{"y": 3.0, "spacing_stiffness": 4e8, "shear_stiffness": 5e8, "damping_r
 # A smooth pulse: at the kinks of a sine the load's mean over a step, which the stress at the start
 # contains, is off by first order.
 BLOW = {"shape": "ricker", "amplitude": 1e5, "period": 0.01, "direction": [0.48, 0.6, -0.64]}
-BASE = {**BLOW, "amplitude": 1.0, "quantity": "velocity"}
+BASE = {**BLOW, "amplitude": 100.0, "quantity": "acceleration"}
 ECCENTRIC = {"load": {**BLOW, "at": [0.1, -0.05]}, "joints__damping_ratio": 0.05}
+UNTURNED = {"motion__rotation": "none", "joints__damping_ratio": None}
 ROWS = {
-    "matched, fixed, mass damping": {
-        "ends": {"start": "matched", "end": "fixed"},
-        "damping__mass_proportional": 50.0,
-    },
-    "shaken base, quiet": {
-        "motion__rotation": "none",
-        "joints__damping_ratio": None,
-        "ends": {"start": "fixed", "end": "quiet"},
-        "load": {**BASE, "amplitude": 100.0, "quantity": "acceleration"},
-    },
+    "matched, fixed, mass damping": {"ends": HELD, "damping__mass_proportional": 50.0},
+    "shaken base, quiet": UNTURNED | {"ends": {"start": "fixed", "end": "quiet"}, "load": BASE},
     "all linear effects": {
         "ends": {"start": "quiet", "end": "fixed"},
         "soft_layers": LAYER,
@@ -55,12 +47,7 @@ ROWS = {
         "gravity": {"direction": [0.6, 0.8, 0.0], "static": False},
         "prestress": {"normal": 1e5},
     },
-    "blocks that do not turn": {
-        "motion__rotation": "none",
-        "joints__damping_ratio": None,
-        "load": BLOW,
-        "ends": {"start": "quiet", "end": "matched"},
-    },
+    "blocks that do not turn": UNTURNED | {"load": BLOW, "ends": OPEN},
 }
 #: Name: the fixture, its changes, the largest relative L2 misfit at the default step.
 SCENES = {f"chain, {name}": ("pillar", changes, 2e-3) for name, changes in CHAINS.items()}
@@ -107,7 +94,6 @@ SEGMENTS = [
     {"y": [30.0, 50.0], "joints": False, "block": 0.4, "intact_modulus": 1e10},
 ]
 SLIP = {"friction_angle": 20.0, "cohesion": 1e4}
-HELD, OPEN = {"start": "matched", "end": "fixed"}, {"start": "quiet", "end": "matched"}
 LEDGERS = {
     "large step": ("pillar", {"numerics__dem__step_fraction": 0.9}),
     "local damping": ("row", {"damping__local": 0.3, "ends__end": "quiet"}),

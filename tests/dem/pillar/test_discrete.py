@@ -4,7 +4,8 @@ c dt = d; and what ends give back."""
 import numpy as np
 import pytest
 
-from closed_forms import leapfrog
+from closed_forms.leapfrog import modes_of_blocks
+from closed_forms.modes import of_modes
 from jointwave import dem
 from jointwave.cases.loads import load_history, step_means
 from jointwave.cases.material.calibrate import calibrate
@@ -50,8 +51,8 @@ def closed_form(scene, dt, steps):
     count, c = scene.block_count, mass.shape[1]
     drive = drive_vector(scene)[own_freedoms(scene)]
     place = relative(contacts, *mass.shape)[:c, : count * c].T @ drive
-    modes = leapfrog.modes_of_blocks(mass, contacts)
-    return leapfrog.of_modes(modes, place, stress, np.array([steps]), dt).reshape(count, c).T
+    modes = modes_of_blocks(mass, contacts)
+    return of_modes(modes, place, stress, np.array([steps]), dt).reshape(count, c).T
 
 
 @pytest.mark.parametrize(("fixture", "changes", "fraction"), BLOWS.values(), ids=BLOWS)

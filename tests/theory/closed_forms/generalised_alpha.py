@@ -30,17 +30,15 @@ class Motion(NamedTuple):
     acceleration: np.ndarray
 
 
-def amplification(constants: Constants, x: Values, xi: Values = 0.0) -> np.ndarray:
-    """Return what a step without load multiplies (q, dt v, dt^2 a) by, [..., 3, 3].
-
-    x : omega dt; xi : damping ratio; both of any shape.
-    """
-    return np.linalg.solve(*_both_ends(constants, x, xi))
+def amplification(constants: Constants, x: Values) -> np.ndarray:
+    """Return what a step without load or damping multiplies (q, dt v, dt^2 a) by, [..., 3, 3];
+    x : omega dt, of any shape."""
+    return np.linalg.solve(*_both_ends(constants, x, 0.0))
 
 
-def spectral_radius(constants: Constants, x: Values, xi: Values = 0.0) -> np.ndarray:
+def spectral_radius(constants: Constants, x: Values) -> np.ndarray:
     """Return the largest factor by which a step multiplies the mode; above 1 it grows."""
-    return np.abs(np.linalg.eigvals(amplification(constants, x, xi))).max(axis=-1)
+    return np.abs(np.linalg.eigvals(amplification(constants, x))).max(axis=-1)
 
 
 def response(
@@ -49,23 +47,19 @@ def response(
     force: np.ndarray,
     dt: float,
     xi: Values = 0.0,
-    start: tuple[Values, Values] = (0.0, 0.0),
 ) -> Motion:
-    """Return the exact discrete motion of modes: the method itself, step by step.
+    """Return the exact discrete motion of modes from rest: the method itself, step by step.
 
     Parameters
     ----------
     omega, xi : frequencies, rad/s, and damping ratios, float arrays [modes].
     force : float array [modes, steps + 1], over the modal mass, m/s2, at steps 0, 1, ...
     dt : s.
-    start : displacement (m) and velocity (m/s) at step 0; the acceleration balances them there.
     """
     alpha_f = constants[1]
     new, old = _both_ends(constants, omega * dt, np.broadcast_to(xi, omega.shape))
     out = np.zeros((*force.shape, 3))
-    out[:, 0, 0], out[:, 0, 1] = start[0], dt * np.asarray(start[1])
-    drag, spring = 2 * xi * omega * dt, (omega * dt) ** 2
-    out[:, 0, 2] = dt**2 * force[:, 0] - drag * out[:, 0, 1] - spring * out[:, 0, 0]
+    out[:, 0, 2] = dt**2 * force[:, 0]
     load = dt**2 * ((1 - alpha_f) * force[:, 1:] + alpha_f * force[:, :-1])
     step = np.linalg.inv(new)
     for n in range(force.shape[1] - 1):
