@@ -162,21 +162,16 @@ def plain(monkeypatch):
     """Let blocks take their steps as plain Python, on one thread: nothing is compiled."""
     from jointwave.dem.kernel import leapfrog, loop
 
-    def in_python(kernel_for):
-        def python_for(form):
-            kernel = kernel_for(form)
-            return getattr(kernel, "__wrapped__", kernel)
+    loop_for = leapfrog.loop_for
 
-        return python_for
+    def in_python(form):
+        kernel = loop_for(form)
+        return getattr(kernel, "__wrapped__", kernel)
 
-    stand_ins = {
-        "flush_denormals": lambda: 0,
-        "restore_denormals": lambda old: None,
-        "borrowed": lambda values: values,
-    }
-    monkeypatch.setattr(leapfrog, "loop_for", in_python(leapfrog.loop_for))
-    for key, stand_in in stand_ins.items():
-        monkeypatch.setattr(loop, key, stand_in)
+    monkeypatch.setattr(leapfrog, "loop_for", in_python)
+    monkeypatch.setattr(loop, "flush_denormals", lambda: 0)
+    monkeypatch.setattr(loop, "restore_denormals", lambda old: None)
+    monkeypatch.setattr(loop, "borrowed", lambda values: values)
 
 
 @pytest.fixture(scope="session")

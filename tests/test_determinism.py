@@ -64,9 +64,7 @@ def results(tmp_path_factory):
     assert done.returncode == 0, done.stderr
     for name, (engine, keys) in runs.items():
         solve(engine, load_variant(find(SCENE), "", keys)).to_netcdf(here / f"{name}.nc")
-    return tuple(
-        {name: xr.load_dataset(at / f"{name}.nc") for name in RUNS} for at in (folder, here)
-    )
+    return tuple({one: xr.load_dataset(at / f"{one}.nc") for one in RUNS} for at in (folder, here))
 
 
 def assert_same_bits(one, other):
@@ -89,7 +87,6 @@ def test_a_run_repeats_bit_for_bit(results, name):
 
 
 def test_the_last_bit_of_a_load_is_told():
-    """Runs that differ by one unit in the last place are not taken for the same."""
     loads = (1e6, 1e6 * (1 + 2**-52))
     one, other = (
         solve("dem", load_variant(find(SCENE), "", SHORT | {"load.amplitude": x})) for x in loads

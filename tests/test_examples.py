@@ -32,17 +32,11 @@ def code_of(name):
     return [text for mark, text in zip(parts[::2], parts[1::2], strict=True) if not mark]
 
 
-@pytest.fixture
-def no_windows(monkeypatch, tmp_path):
+@pytest.mark.parametrize("name", NAMES)
+def test_an_example_runs_asserts_and_draws(name, monkeypatch, tmp_path):
+    """Cell after cell; each figure holds curves, and every cell's assertions hold."""
     monkeypatch.chdir(tmp_path)
     matplotlib.use("agg")
-    yield
-    plt.close("all")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_an_example_runs_asserts_and_draws(name, no_windows, monkeypatch):
-    """Cell after cell; each figure holds curves, and every cell's assertions hold."""
     figures = []
 
     def show():

@@ -256,12 +256,7 @@ HOSTILE = st.text(
     ),
     max_size=20,
 )
-OFTEN = settings(
-    max_examples=100,
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+OFTEN = settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
 ESCAPES = "\x1b]0;owned\x07 \x1b[2J\x9b31m \x7f\u202e[red]:smile:"
 
 

@@ -40,6 +40,7 @@ LONG = {"record__interval": 1e-6, "time__duration": 1.0, "load__period": 0.01}
 SPACE = {"load__direction": [0.6, 0.8, 0.0]}
 
 FRACTION, ELEMENTS = "numerics.dem.step_fraction", "numerics.continuum.elements_per_block"
+COARSE = dict(numerics__continuum__elements_per_block=1)
 FINE = dict(numerics__continuum__elements_per_block=1000, pillar__block=0.05)
 THICK = dict(numerics__continuum__dim=3, numerics__continuum__elements_across=50)
 FIELDS = dict(record__fields=1e-5, time__duration=1e-2, record__interval=1e-5)
@@ -84,12 +85,7 @@ def test_a_large_run_is_refused_with_its_estimate(pillar, limit, name):
 
 
 @pytest.mark.parametrize(
-    "solver, changes",
-    [
-        ("dem", {}),
-        ("dem", SPACE),
-        ("continuum-jointed", dict(numerics__continuum__elements_per_block=1)),
-    ],
+    "solver, changes", [("dem", {}), ("dem", SPACE), ("continuum-jointed", COARSE)]
 )
 def test_a_run_within_the_memory_is_made(pillar, limit, solver, changes):
     """The estimate of a short run of a hundred blocks is some MB, far below what it is given."""
@@ -147,9 +143,8 @@ def test_the_estimate_is_near_what_a_run_takes(pillar, limit, tmp_path, blocks, 
 def test_a_file_of_curves_is_read_where_it_fits(tmp_path, limit):
     """What does not is refused by what its header says."""
     path, time = tmp_path / "run.nc", np.arange(20_000.0)
-    one = xr.Dataset(
-        {"stress": (("stress_y", "time"), time[None])}, {"time": time, "stress_y": [1.0]}
-    )
+    axes = {"time": time, "stress_y": [1.0]}
+    one = xr.Dataset({"stress": (("stress_y", "time"), time[None])}, axes)
     one.to_netcdf(path, engine="scipy")
     assert read_netcdf(path, 3).time.values.size == 20_000
     limit(1e-4)
@@ -179,9 +174,8 @@ def test_a_waveform_beyond_what_a_file_holds_is_refused(pillar):
     """Thirty sections of ten million samples: 2.4 GB, and the format ends at 2 GB a variable."""
     places = [0.5 * i for i in range(30)]
     scene = pillar(record__stress=places, record__interval=1e-7, time__duration=1.0)
-    with pytest.raises(
-        SceneError, match=r"record\.stress = '30 places'.*2\.4 GB; at most 2\.15 GB"
-    ):
+    said = r"record\.stress = '30 places'.*2\.4 GB; at most 2\.15 GB"
+    with pytest.raises(SceneError, match=said):
         waveform_bytes(scene)
 
 
@@ -237,7 +231,6 @@ BOMBS = {
 
 @pytest.mark.parametrize("name", BOMBS)
 def test_a_file_is_refused_before_it_takes_the_memory(name, limit, tmp_path):
-    """In one line, with far less than what it would take."""
     limit(0.2)
     tracemalloc.start()
     with pytest.raises((SceneError, ValueError, MemoryError)) as error:

@@ -61,9 +61,7 @@ SPATIAL = {
     "the load has a component across the axis": ACROSS,
     "the load is eccentric": {"load.at": [0.0, 0.1]},
     "the load is a couple": {"load.arm": 0.1},
-    "gravity has a component across the axis": {
-        "gravity": {"direction": [0.6, -0.8, 0.0], "static": False}
-    },
+    "gravity has a component across the axis": {"gravity": DOWN | {"direction": [0.6, -0.8, 0.0]}},
 }
 
 

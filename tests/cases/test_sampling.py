@@ -22,9 +22,7 @@ def scene(pillar):
     return pillar(**{"time.duration": 0.01, "record.interval": 1e-3})
 
 
-@pytest.mark.parametrize(
-    ("duration", "count"), [(0.3, 4), (0.7, 8), (0.35, 4), (0.29, 3), (0.1, 2)]
-)
+@pytest.mark.parametrize("duration, count", [(0.3, 4), (0.7, 8), (0.35, 4), (0.29, 3), (0.1, 2)])
 def test_the_last_sample_is_there(duration, count):
     """0.3 / 0.1 and 0.7 / 0.1 are below 3 and 7 in the last digit."""
     times = sample_times(sampled(duration, 0.1))

@@ -74,10 +74,7 @@ SPECTRA = {
     "triangle": (TRIANGLE, lambda x: 3 * np.sinc(x) ** 4),
     "stress": ("stress", sine),
     "velocity": ("velocity", sine),
-    "acceleration": (
-        "acceleration",
-        lambda x: 4 / 3 * (np.sin(pi * x) / (pi * x * (1 - x * x))) ** 2,
-    ),
+    "acceleration": ("acceleration", lambda x: 4 / 3 * (np.sinc(x) / (1 - x * x)) ** 2),
 }
 
 

@@ -18,7 +18,6 @@ SHORT: dict[str, Any] = {
 
 @pytest.fixture(scope="session")
 def rock_mass():
-    """Return `bodies.rock_mass`."""
     return bodies.rock_mass
 
 

@@ -87,10 +87,15 @@ def _transfinite(model, dim, elements, recombine):
             model.mesh.setTransfiniteVolume(volume)
 
 
+def _points_of(model, dim, tag):
+    """Return the numbers of the points around a face or curve, and their places [n, 3]."""
+    points = [one for _, one in model.getBoundary([(dim, tag)], recursive=True)]
+    return points, np.array([model.getValue(0, one, []) for one in points])
+
+
 def _corners_of(model, face):
     """Return the corner points of a face, around it from the same corner for opposite faces."""
-    points = [tag for _, tag in model.getBoundary([(2, face)], recursive=True)]
-    x = np.array([model.getValue(0, tag, []) for tag in points])
+    points, x = _points_of(model, 2, face)
     flat = np.delete(x - x.mean(axis=0), np.ptp(x, axis=0).argmin(), axis=1)
     return [points[i] for i in np.argsort(np.arctan2(flat[:, 1], flat[:, 0]))]
 
@@ -98,8 +103,7 @@ def _corners_of(model, face):
 def _faces_across(model, dim, side):
     """Return each face or curve that spans the section, with its y at both ends of x."""
     for d, tag in model.getEntities(dim - 1):
-        points = [t for _, t in model.getBoundary([(d, tag)], recursive=True)]
-        x = np.array([model.getValue(0, t, []) for t in points])
+        _, x = _points_of(model, d, tag)
         spans = np.ptp(x, axis=0)
         if np.isclose(spans[0], side) and (dim == 2 or np.isclose(spans[2], side)):
             ends = (x[np.isclose(x[:, 0], s), 1][0] for s in (-side / 2, side / 2))

@@ -23,9 +23,8 @@ def stack(dim, count, cells, across=1, order=2, modulus=2.0, poisson=0.25):
     up, levels = np.eye(dim)[-1], np.arange(1.0, count)
     body = cut(box(low, high), planes_of(up, np.zeros(1, int), [levels], joint_set=0), 1e-9).body
     boxes, middle = boxes_of(body), facet_moments(body).centroid
-    arms = (
-        body.vertices[boxes.corners[:, 1 << np.arange(dim)]] - body.vertices[boxes.corners[:, :1]]
-    )
+    corners = body.vertices[boxes.corners]
+    arms = corners[:, 1 << np.arange(dim)] - corners[:, :1]
     mesh = box_mesh(body, boxes, np.where(arms @ up > 0.5, cells, across))
     column = np.where(body.inner, body.sides.min(axis=1), -1)
     side = np.where(middle[:, -1] < 1e-9, 0, np.where(middle[:, -1] > count - 1e-9, 1, 2))

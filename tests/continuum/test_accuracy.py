@@ -43,9 +43,8 @@ def test_jointed_error_falls_with_the_square_of_the_step(pillar, layer):
     """
     errors = []
     for interval in (2e-5, 1e-5, 5e-6):
-        scene = pillar(
-            **RICKER, **layer, record__interval=interval, numerics__continuum__step_fraction=1.0
-        )
+        step = {"record__interval": interval, "numerics__continuum__step_fraction": 1.0}
+        scene = pillar(**RICKER, **layer, **step)
         result = simulate(scene, "jointed")
         assert result.dt == pytest.approx(interval)
         errors.append(relative_l2(result.stress.values, JOINTED.run(scene).stress.values))

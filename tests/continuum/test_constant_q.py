@@ -35,17 +35,12 @@ DAMPED_LAYER = LAYER | {"y": 8.0, "damping_ratio": 1e-3}
 BAR = {"y": [4.0, 6.0], "joints": False, "intact_modulus": 2e11}
 
 
-def of_bar(body):
-    """Return a problem of rock with a quality factor in the band of its modes."""
-    found = fitted(10.0, SPEED / 2, SPEED / 20, SPEED * 5)
-    return Problem(body, readings(body), mechanisms=found)
-
-
 @pytest.mark.parametrize(("dim", "number"), [(2, 4), pytest.param(3, 20, marks=slow)])
 def test_a_mode_rings_and_decays_as_the_root_of_leapfrog_says(dim, number):
-    """Rock of one quality factor has the modes of elastic rock."""
+    """Rock of one quality factor, here in the band of its modes, has the modes of elastic rock."""
     body = stack(dim, 1, 4 if dim < 3 else 2, 1)
-    own = of_bar(body)
+    found = fitted(10.0, SPEED / 2, SPEED / 20, SPEED * 5)
+    own = Problem(body, readings(body), mechanisms=found)
     dt = 0.5 * own.critical_step()
     steps = Leapfrog(own, dt, 1)
     square, shapes = eigh(body.stiffness.toarray(), np.diag(body.mass))
@@ -122,14 +117,12 @@ def test_snapshots_have_the_stress_that_receivers_record(rock_mass, scheme):
         record={"points": [[1.5, 2.0]], "interval": 2e-5, "fields": 4e-5},
     )  # fmt: skip
     result = simulate(scene)
-    shots = snapshots_of(result)
+    s = snapshots_of(result)
     every = round(4e-5 / 2e-5)
     known = result["stress"].values[0, ::every]
-    away = shots.points[shots.cells].mean(axis=1)[:, :2] - [1.5, 2.0]
+    away = s.points[s.cells].mean(axis=1)[:, :2] - [1.5, 2.0]
     cell = int(np.linalg.norm(away, axis=1).argmin())
-    np.testing.assert_allclose(
-        shots.stress[:, cell], known, rtol=0, atol=1e-9 * np.abs(known).max()
-    )
+    np.testing.assert_allclose(s.stress[:, cell], known, rtol=0, atol=1e-9 * np.abs(known).max())
 
 
 def smooth(pillar, **changes):

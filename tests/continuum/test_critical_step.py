@@ -88,9 +88,7 @@ def test_slip_and_opening_do_not_lower_it(joints, short):
 
 
 def test_uniform_lumped_linear_bar_is_critical_when_a_wave_crosses_one_element(pillar):
-    scene = pillar(
-        **{"numerics__continuum__order": 1, "numerics__continuum__elements_per_block": 1}
-    )
+    scene = pillar(numerics__continuum__order=1, numerics__continuum__elements_per_block=1)
     p = calibrate(scene)
     critical = plan_of(scene, "equivalent").critical
     assert critical == pytest.approx(p.spacing / p.bar_speed, rel=1e-4)

@@ -17,12 +17,8 @@ from tests.continuum.bodies import STIFFNESS
 ROUND_OFF = 1e-11
 
 ROCK = {"rock__intact_poisson": 0.0}
-MASS = {
-    "rock__p_speed": None,
-    "rock__s_speed": None,
-    "rock__equivalent_modulus": 4.4e9,
-    "rock__equivalent_poisson": 0.0,
-}
+MASS = {"rock__equivalent_modulus": 4.4e9, "rock__equivalent_poisson": 0.0}
+MASS |= {"rock__p_speed": None, "rock__s_speed": None}
 LAYER = [{"y": 1.0, "spacing_stiffness": 4.4e8, "damping_ratio": 0.1}]
 EXPLICIT = {
     "numerics__continuum__scheme": "explicit",

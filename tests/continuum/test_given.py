@@ -57,12 +57,8 @@ def test_uniform_stress_is_in_balance_through_an_inclined_joint(kind, order, dou
 
 
 LAW = {"friction_angle": 20.0, "cohesion": 1e4, "tension": False, "damping_ratio": 0.02}
-ACTING = {
-    "joints": ROCK["joints"] | LAW,
-    "ends": {"start": "quiet", "end": "matched"},
-    "time__duration": 2e-3,
-    "record__interval": 5e-5,
-}
+ACTING = {"joints": ROCK["joints"] | LAW, "ends": {"start": "quiet", "end": "matched"}}
+ACTING |= {"time__duration": 2e-3, "record__interval": 5e-5}
 
 
 @pytest.mark.parametrize("kind", ["quadrilateral", "hexahedron"])

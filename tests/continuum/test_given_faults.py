@@ -40,12 +40,8 @@ MISTAKES = {
     "of second order": (QUADS, {"order": 2}, "has quad9 cells, must be first-order"),
     "of a wrong dimension": (QUADS, IN_SPACE, "quadrilateral cells.*dim = 3"),
     "pieces apart": (QUADS, PIECES, "4 facets coincide with others and are in no group 'joint"),
-    "saved whole, 2.2": (QUADS, {"version": 2.2, "save_all": 1}, "save it with Mesh.SaveAll = 0"),
-    "saved whole, 4.1": (
-        QUADS,
-        {"save_all": 1},
-        "cells in no group; save it with Mesh.SaveAll = 0",
-    ),
+    "whole, 2.2": (QUADS, {"version": 2.2, "save_all": 1}, "save it with Mesh.SaveAll = 0"),
+    "whole, 4.1": (QUADS, {"save_all": 1}, "cells in no group; save it with Mesh.SaveAll = 0"),
     "of third order": (TRIANGLES, CUBIC, "support numerics.continuum.order 1 or 2"),
 }
 
@@ -95,11 +91,7 @@ FILES = {
     "no rock": ('"rock"', '"stone"', "no group whose name starts with 'rock'"),
     "a rock of lines": ('2 1 "rock"', '1 2 "rock"', "line cells"),
     "no cell in the rock": ('2 1 "rock"', '2 7 "rock"', "has no cells"),
-    "two kinds of cells": (
-        AFTER,
-        "2 2 2 1 1 3 4 6",
-        "quad and triangle cells, must be of one kind",
-    ),
+    "two kinds": (AFTER, "2 2 2 1 1 3 4 6", "quad and triangle cells, must be of one kind"),
     "cells outside the rock": (AFTER, "2 3 2 0 1 3 4 6 5", "1 of its cells are in no group"),
     "a joint without facets": ('1 2 "joint"', '1 5 "joint"', "group 'joint' has no facets"),
     "a joint inside a cell": ("2 2 1 3 4", "2 2 1 3 6", "belong to no rock cell"),

@@ -87,10 +87,7 @@ normal_stiffness = 2e10
 shear_stiffness = 8e9
 """  # fmt: skip
 #: A joint that bends and ends inside the rock, one that ends at it, and a hole.
-BENT = {
-    "Joint FAULT": [(0.0, 3.0), (4.0, 5.0), (7.0, 5.5)],
-    "joint_cross": [(3.0, 0.0), (4.0, 5.0)],
-}
+BENT = {"Joint FAULT": [(0, 3), (4, 5), (7, 5.5)], "joint_cross": [(3, 0), (4, 5)]}
 
 
 def test_joints_of_a_mesh_may_bend_and_end_inside_the_rock(given):

@@ -89,9 +89,7 @@ def test_rock_in_free_fall_carries_no_stress(short, keys):
 @pytest.mark.parametrize(
     ("dim", "keys", "places"),
     [
-        (1, {}, [0.25, 0.3, 1.0]),
-        (1, IMPLICIT, [0.25, 0.3, 1.0]),
-        (3, {}, [0.25, 0.3, 1.0]),
+        *((dim, keys, [0.25, 0.3, 1.0]) for dim, keys in ((1, {}), (1, IMPLICIT), (3, {}))),
         (3, SIMPLEX, [0.5, 1.0, 1.5]),
     ],
 )

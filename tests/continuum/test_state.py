@@ -8,6 +8,7 @@ from jointwave.continuum.plan import plan_of
 from jointwave.continuum.problem import at_rest
 from jointwave.continuum.run import simulate
 from jointwave.results.dataset import energy_residual
+from tests.turned import turned
 
 HOLE = [[2.0, 2.5], [4.0, 2.5], [4.0, 4.0], [2.0, 4.0]]
 EXCAVATED = {
@@ -80,35 +81,24 @@ def test_nothing_moves_after_an_excavation(scheme, rock_mass):
 
 def test_a_turned_excavation_is_the_same(rock_mass):
     """To 1e-11, of gap, slip and tractions where joints slip around it."""
-    turn = np.array([[0.8, -0.6], [0.6, 0.8]])
+    square = [[2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0]]
+    tables = {"domain": {"size": [6.0, 6.0], "openings": [square]}}
+    tables["prestress"] = {"xx": 5e6, "yy": 5.6e6, "xy": 0.0}
 
-    def found(turn, sides, friction):
-        def place(points):
-            return (np.array(points) @ turn.T).tolist()
+    def scene(**law):
+        law |= {"spacing": 2.0, "through": [0.0, 0.0]}
+        return rock_mass(*({"dip": dip} | law for dip in (0.0, 90.0)), **EXCAVATED | tables)
 
-        dip = np.degrees(np.arctan2(turn[1, 0], turn[0, 0]))
-        tensor = turn @ np.diag([5e6, 5.6e6]) @ turn.T
-        law = {"spacing": 2.0, "through": [0.0, 0.0], **friction}
-        record = {key: place(at) for key, at in EXCAVATED["record"].items()}
-        corners = place([[0.0, 0.0], [6.0, 0.0], [6.0, 6.0], [0.0, 6.0]])
-        square = place([[2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0]])
-        scene = rock_mass(
-            law | {"dip": dip}, law | {"dip": dip + 90.0},
-            domain={"outline": corners, "openings": [square]},
-            prestress={"xx": tensor[0, 0], "yy": tensor[1, 1], "xy": tensor[0, 1]},
-            boundaries=dict.fromkeys(sides, "quiet"), record=record,
-        )  # fmt: skip
+    def found(scene):
         problem = plan_of(scene).problem
         u = at_rest(scene, problem)[1].u
         jump = problem.readings.jump @ problem.body.joints.jumps(u).ravel()
         return jump, simulate(scene).traction.values[0, 0]
 
-    slips = {"friction_angle": 21.0}
-    one = found(np.eye(2), EXCAVATED["boundaries"], slips)
-    other = found(turn, ["outline"], slips)
+    slips, turn = scene(friction_angle=21.0), np.array([[0.8, -0.6], [0.6, 0.8]])
+    one, other, elastic = map(found, (slips, turned(slips, turn), scene()))
     for a, b in zip(one, other, strict=True):
         assert np.abs(a - b).max() < 1e-11 * np.abs(a).max()
-    elastic = found(np.eye(2), EXCAVATED["boundaries"], {})
     assert np.abs(elastic[0] - one[0]).max() > 1e-3 * np.abs(one[0]).max()
 
 

@@ -12,7 +12,7 @@ def rock(size, sets, law=(), **tables):
         "domain": {"size": list(size)},
         "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
         "joint_sets": [
-            {"name": f"set {k}"} | stiffness | one | dict(law) for k, one in enumerate(sets)
+            {"name": f"set {k}"} | stiffness | s | dict(law) for k, s in enumerate(sets)
         ],
         "time": {"duration": 1e-3},
         "record": {"points": [[x / 2.1 for x in size]]},

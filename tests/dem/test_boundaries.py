@@ -55,13 +55,6 @@ def polytope(dim):
     return blocks_of(body.removed(depth < depth.max(), 1), 1e-9)
 
 
-def on_all(blocks, traction):
-    """The resultants of a traction, a function of points, on the whole boundary of one block."""
-    points = points_on(blocks, np.arange(len(blocks.boundary)))
-    force = points.area[:, None] * traction(points)
-    return resultants(points.arm, force).sum(axis=0)
-
-
 @pytest.mark.parametrize("dim", [1, 2, 3])
 def test_a_linear_stress_has_the_resultants_of_its_volume(dim):
     """Of a stress s + g x about the centroid, by the divergence theorem: the force V div g, the
@@ -69,10 +62,9 @@ def test_a_linear_stress_has_the_resultants_of_its_volume(dim):
     rng = np.random.default_rng(dim)
     s, g = rng.normal(size=(dim, dim)), rng.normal(size=(dim, dim, dim))
     blocks = polytope(dim)
-    found = on_all(
-        blocks,
-        lambda at: np.einsum("mi,mij->mj", at.normal, s + np.einsum("ijk,mk->mij", g, at.arm)),
-    )
+    at = points_on(blocks, np.arange(len(blocks.boundary)))
+    traction = np.einsum("mi,mij->mj", at.normal, s + np.einsum("ijk,mk->mij", g, at.arm))
+    found = resultants(at.arm, at.area[:, None] * traction).sum(axis=0)
     expected = np.append(np.einsum("iji->j", g), s)
     np.testing.assert_allclose(found, blocks.volume[0] * expected, atol=1e-13 * SIZE.prod())
 

@@ -179,14 +179,12 @@ def test_turning_first_or_afterwards_gives_the_same(law):
     put_turned(after, places, rotation)
     np.testing.assert_allclose(first.u[:, :3], after.u[:, :3], rtol=0, atol=1e-12)
     np.testing.assert_allclose(first.v, after.v, rtol=0, atol=1e-9 * np.abs(after.v).max())
-    cut, elsewhere = blocks_of(rotation, **law)
+    cut, there = blocks_of(rotation, **law)
     other = state_at_rest(cut)
     start = moving(model).v
     other.v[:] = np.column_stack([rotation.apply(start[:, :3]), rotation.apply(start[:, 3:])])
     take(cut, other, 300)
-    np.testing.assert_allclose(
-        elsewhere + other.u[:, :3], places + after.u[:, :3], rtol=0, atol=1e-11
-    )
+    np.testing.assert_allclose(there + other.u[:, :3], places + after.u[:, :3], rtol=0, atol=1e-11)
 
 
 def left_over(law, dt, drive=None, speed=2.0):

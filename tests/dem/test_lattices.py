@@ -19,11 +19,7 @@ from tests.dem.rocks import rock
 SIDE, DENSITY, STIFFNESS = 2.0, 2500.0, (3e9, 1.1e9)  # m, kg/m3; normal and in shear, Pa/m
 COUNT = {2: 12, 3: 6}
 #: Normals of joints: up, to the east and to the north.
-ATTITUDES = (
-    {"dip": 0.0},
-    {"dip": 90.0, "dip_direction": 90.0},
-    {"dip": 90.0, "dip_direction": 0.0},
-)
+ATTITUDES = {"dip": 0.0}, {"dip": 90.0, "dip_direction": 90.0}, {"dip": 90.0, "dip_direction": 0.0}
 POINTS = {"friction_angle": 30.0, "cohesion": 1e20, "point_rule": "gauss", "contact_points": 2}
 ACROSS = (("left", "right"), ("bottom", "top"), ("front", "back"))
 

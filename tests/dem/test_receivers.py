@@ -52,25 +52,18 @@ def blocks(dim, tilt=0.2):
 
 def all_faces(found):
     """Contacts, and the boundary as contacts with walls; part of their compliance is the rock's."""
-    parts, pairs, arms = (found.contacts, found.boundary), [], []
-    for part in parts:
-        i, j = part.blocks.T
-        arms.append(
-            np.stack([part.centroid - found.centroid[k] for k in (i, np.maximum(j, 0))], axis=1)
-        )
-        pairs.append(np.where(part.blocks < 0, found.count, part.blocks))
-    normal, area = (np.concatenate([getattr(p, k) for p in parts]) for k in ("normal", "area"))
-    faces = Contacts(
-        np.concatenate(pairs),
-        area,
-        frames_of(normal),
-        np.concatenate(arms),
-        excess=np.tile([1e-10, 3e-10], (len(area), 1)),
+
+    def both(name):
+        return np.concatenate([getattr(x, name) for x in (found.contacts, found.boundary)])
+
+    blocks, area, centroid = both("blocks"), both("area"), both("centroid")
+    arm = centroid[:, None] - found.centroid[np.maximum(blocks, 0)]
+    blocks, excess = (
+        np.where(blocks < 0, found.count, blocks),
+        np.tile([1e-10, 3e-10], (len(area), 1)),
     )
-    centroid, second = (
-        np.concatenate([getattr(p, k) for p in parts]) for k in ("centroid", "second_moment")
-    )
-    return faces, centroid, second
+    faces = Contacts(blocks, area, frames_of(both("normal")), arm, excess=excess)
+    return faces, centroid, both("second_moment")
 
 
 def at(found, stencils):
@@ -98,9 +91,7 @@ def test_an_affine_motion_of_blocks_in_rock_is_that_of_every_point(dim):
     motion = draw(size=(found.count, freedoms, 1))
     motion[:, :dim, 0] = b + found.centroid @ A.T
     moved = at_points(receivers, motion[receivers.places])
-    np.testing.assert_allclose(
-        moved[:, 0], b + points @ A.T, rtol=0, atol=1e-13 * np.abs(A).max() * 10
-    )
+    np.testing.assert_allclose(moved[:, 0], b + points @ A.T, rtol=0, atol=1e-12 * np.abs(A).max())
     assert (np.diff(receivers.places) > 0).all() and len(receivers.places) > dim
 
 
@@ -147,9 +138,7 @@ def field(dim):
     basis = np.array(basis)
     balance = np.einsum("mijj->im", basis)
     free = null_space(balance)
-    gradient = (
-        np.tensordot(free @ draw(size=free.shape[1]), basis, 1) if free.size else 0 * basis[0]
-    )
+    gradient = np.tensordot(free @ draw(size=free.shape[1]), basis, 1)
     S = draw(size=(dim, dim))
     return S + S.T, gradient
 

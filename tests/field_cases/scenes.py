@@ -17,13 +17,8 @@ JOINT = {"name": "joint", "normal_stiffness": 1.6e10, "shear_stiffness": 9e9}
 
 def mass(width, height, **tables):
     """Return granite of this size (m) between quiet sides, some tables replaced."""
-    own = {
-        "title": "a rock mass",
-        "domain": {"size": [width, height]},
-        "rock": GRANITE,
-        "boundaries": dict.fromkeys(SIDES, "quiet"),
-    }
-    return own | tables
+    own = {"title": "a rock mass", "domain": {"size": [width, height]}, "rock": GRANITE}
+    return own | {"boundaries": dict.fromkeys(SIDES, "quiet")} | tables
 
 
 def wave(kind="P", direction=(0.0, 1.0), period=0.005, **keys):

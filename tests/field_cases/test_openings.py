@@ -66,9 +66,7 @@ def test_two_corners_of_a_face_load_this_face(engine, points):
     """In either order: the rock beside the left face moves to the left, by some 1 MPa / rho c, and
     that beyond the right one little, later."""
     ends = [[11.0, 11.0], [11.0, 13.0]]
-    found, other = (
-        solve(engine, opened(points, between)).velocity.values for between in (ends, ends[::-1])
-    )
+    found, other = (solve(engine, opened(points, x)).velocity.values for x in (ends, ends[::-1]))
     assert (found == other).all()
     loaded, beyond = found[0, :, 0], found[1, :, 0]
     assert loaded.min() < -0.02 and np.abs(beyond).max() < 0.3 * np.abs(loaded).max()

@@ -165,9 +165,8 @@ def test_a_pillar_reads_the_mean_of_both_sides_of_a_soft_layer():
         assert relative_l2(values.reshape(3, -1)[0], bar[0]) < 0.01
     assert any("lies on a soft layer" in line for line in warnings(scene))
     near = warnings(_at(scene, [25.1, 25.25]))  # within half a block they interpolate across it
-    assert [line.split(" m ")[0] for line in near if "half a block" in line] == [
-        "record.velocity = 25.1"
-    ]
+    said = [line.split(" m ")[0] for line in near if "half a block" in line]
+    assert said == ["record.velocity = 25.1"]
 
 
 @pytest.mark.parametrize("engine", ENGINES)

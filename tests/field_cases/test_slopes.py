@@ -129,9 +129,7 @@ def test_a_joint_below_its_strength_holds_for_ten_seconds(engine):
 
 @pytest.mark.parametrize("friction", [12.0, 30.0])
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_joint_that_the_weight_presses_bears_an_in_situ_stress_that_it_could_not_alone(
-    engine, friction
-):
+def test_a_joint_that_weight_presses_bears_a_stress_that_it_could_not_alone(engine, friction):
     """Horizontal stress s in rock that is free beside and above: a joint at 10 degrees and at the
     depth h, which slides under s alone, bears the traction of s and rho g h, 3.8 degrees off its
     normal. It is stiff, so that the rock's own deformation puts little on it."""

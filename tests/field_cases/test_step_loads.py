@@ -80,9 +80,7 @@ def test_a_fault_weakens_in_time_under_a_load_that_rises(engine):
         assert abs(off) < 0.02 if rise else off < -0.2
 
 
-def test_a_fault_in_a_pillar_is_judged_by_the_exact_solution_of_its_joint(
-    jointwave, in_toml, tmp_path
-):
+def test_a_fault_is_judged_by_the_exact_solution_of_its_joint(jointwave, in_toml, tmp_path):
     """Both engines against the slipping joint between half-spaces, a model other than theirs."""
     coarse = {"pillar": {"length": 1600.0, "side": 20.0, "block": 20.0}}
     (file := tmp_path / "fault.toml").write_text(in_toml(fault(0) | coarse))

@@ -14,6 +14,7 @@ from jointwave import cases
 
 #: How many times the inputs of a plain run.
 FUZZ = int(os.environ.get("FUZZ", "1"))
+EVERY = list(HealthCheck)
 
 
 @pytest.fixture(scope="session")
@@ -42,11 +43,7 @@ def meets(tmp_path, monkeypatch):
     def found(target, inputs, count):
         outcomes = set()
 
-        @settings(
-            max_examples=FUZZ * count,
-            derandomize=FUZZ == 1,
-            suppress_health_check=list(HealthCheck),
-        )
+        @settings(max_examples=FUZZ * count, derandomize=FUZZ == 1, suppress_health_check=EVERY)
         @given(inputs)
         def check(data):
             outcomes.add(targets.met(target, data, tmp_path))

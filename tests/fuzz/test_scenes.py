@@ -95,8 +95,6 @@ def spoilt(draw, texts, changed):
 @pytest.mark.parametrize(
     ("target", "texts", "count"), [("scene", SCENES, 300), ("study", STUDY_TEXTS, 150)]
 )
-def test_a_file_with_changed_keys_or_spoilt_is_read_or_refused(
-    meets, in_toml, target, texts, count
-):
+def test_a_file_that_is_changed_or_spoilt_is_read_or_refused(meets, in_toml, target, texts, count):
     changed = tables(texts).map(in_toml)
     meets(target, changed.map(str.encode) | spoilt(texts, changed), count)

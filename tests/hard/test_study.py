@@ -26,7 +26,6 @@ def rows():
 
 @pytest.mark.parametrize("case", list(rows()))
 def test_row_holds_or_says_why_not(case):
-    """The run ends as it should, within the bounds on energy and misfit."""
     (row,) = judged([hard_cases.run(case)]).itertuples()
     assert row.holds, row
     assert row.ended == case["should"] or (row.ended == NONE and len(row.message) > 10)

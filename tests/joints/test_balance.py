@@ -156,9 +156,8 @@ def test_slip_in_one_direction_is_slip_in_two_without_the_other(name, path):
     one = LAWS[name]
     law, parts = at_point(one)
     line = [(gap, x, 0.0) for gap, x, _ in path]
-    for (_, _, whole), (_, _, planar) in zip(
-        march(one, line), march(one, line, planar=True), strict=True
-    ):
+    both = march(one, line), march(one, line, planar=True)
+    for (_, _, whole), (_, _, planar) in zip(*both, strict=True):
         size = 9e9 * 1e-4 + 1e5 * 20
         assert planar[:6] == pytest.approx(whole[:6], rel=1e-9, abs=1e-9 * size)
         assert planar.history == pytest.approx(whole.history, rel=1e-9, abs=1e-12)

@@ -22,6 +22,9 @@ from tests.joints.points import DT, Point, advance, at_point, some
 K, K_S = 1e9, 2e9
 SOFTENING = Law(K, 1e4, tensile_strength=1e5, critical_opening=3e-4)
 COULOMB = Law(K, None, False, K_S, None, 3e4, 0.5, 1e4)
+RUBS, DRAGS = Law(K, shear_stiffness=K_S, friction=0.5), Law(K, 1e4, False, K_S, 2e4, 1e4)
+BREAKS = Law(K, None, None, K_S, None, 3e4, tensile_strength=1e5, critical_opening=3e-4)
+ROOT = 15.08**0.5  # of 2.2^2 + 3.2^2
 
 
 def near(value):
@@ -72,27 +75,20 @@ def test_normal_traction(one, gap, rate, opening, expected):
          (18e-6, 24e-6, 1e4)),
         (COULOMB, 1e-7, (3e-6, 0.0), Point(0.0, 1e-6, 0.0, 3e4), (0.0, 0.0), (0.0, 0.0, 1e4)),
         # Friction alone: 0.5 of 1e5 Pa; pulled, nothing.
-        (Law(K, None, None, K_S, None, None, 0.5), -1e-4, (1e-3, 0.0), Point(), (-5e4, 0.0),
-         (25e-6, 0.0, 0.0)),
-        (Law(K, None, None, K_S, None, None, 0.5), 1e-4, (1e-3, 0.0), Point(), (0.0, 0.0),
-         (0.0, 0.0, 0.0)),
+        (RUBS, -1e-4, (1e-3, 0.0), Point(), (-5e4, 0.0), (25e-6, 0.0, 0.0)),
+        (RUBS, 1e-4, (1e-3, 0.0), Point(), (0.0, 0.0), (0.0, 0.0, 0.0)),
         # C_s = 2e4 Pa s/m at 0.1 m/s adds 2e3 Pa to 2e9 * 1 um.
-        (Law(K, 1e4, False, K_S, 2e4, 1e4), -1e-4, (1e-6, 0.0), Point(), (-4e3, 0.0),
-         (1e-6, 0.0, 0.0)),
+        (DRAGS, -1e-4, (1e-6, 0.0), Point(), (-4e3, 0.0), (1e-6, 0.0, 0.0)),
         # On the strength both carry 1e4 Pa over the step: e = (0 + 1e4 / 2e9) / 2.
-        (Law(K, 1e4, False, K_S, 2e4, 1e4), -1e-4, (1e-5, 0.0), Point(), (-1e4, 0.0),
-         (2.5e-6, 0.0, 0.0)),
+        (DRAGS, -1e-4, (1e-5, 0.0), Point(), (-1e4, 0.0), (2.5e-6, 0.0, 0.0)),
         # From e = (1, 0) um by (5, 8) um: T* = 2e9 (6, 8) um + 2e4 (0.5, 0.8) m/s = (2.2, 3.2) 1e4.
-        (Law(K, 1e4, False, K_S, 2e4, 1e4), -1e-4, (5e-6, 8e-6), Point(0.0, 1e-6), (
-            -2.2e4 / 15.08**0.5, -3.2e4 / 15.08**0.5), (
-            (1e-6 + 1.1e-5 / 15.08**0.5) / 2, 8e-6 / 15.08**0.5, 0.0)),
+        (DRAGS, -1e-4, (5e-6, 8e-6), Point(0.0, 1e-6), (-2.2e4 / ROOT, -3.2e4 / ROOT),
+         ((1e-6 + 1.1e-5 / ROOT) / 2, 8e-6 / ROOT, 0.0)),
         # Half the tensile strength left is half the cohesion, 1.5e4 Pa; friction takes 0.1 * 5e4.
-        (Law(K, None, None, K_S, None, 3e4, None, None, 1e5, 3e-4), 2e-4, (1e-3, 0.0), Point(2e-4),
-         (-1.5e4, 0.0), (7.5e-6, 0.0, 0.0)),
-        (Law(K, None, None, K_S, None, 3e4, 0.1, None, 1e5, 3e-4), 2e-4, (1e-3, 0.0), Point(2e-4),
-         (-1e4, 0.0), (5e-6, 0.0, 0.0)),
-        (Law(K, None, None, K_S, None, 3e4, None, None, 1e5, 3e-4), 3e-4, (1e-3, 0.0), Point(3e-4),
-         (0.0, 0.0), (0.0, 0.0, 0.0)),
+        (BREAKS, 2e-4, (1e-3, 0.0), Point(2e-4), (-1.5e4, 0.0), (7.5e-6, 0.0, 0.0)),
+        (BREAKS._replace(friction=0.1), 2e-4, (1e-3, 0.0), Point(2e-4), (-1e4, 0.0),
+         (5e-6, 0.0, 0.0)),
+        (BREAKS, 3e-4, (1e-3, 0.0), Point(3e-4), (0.0, 0.0), (0.0, 0.0, 0.0)),
     ],
 )  # fmt: skip
 def test_shear_traction(one, gap, slip, before, expected, after):

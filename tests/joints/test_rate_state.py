@@ -26,11 +26,6 @@ JOINT = Law(
 PRESSED = -1e-3  # m: 1 MPa
 
 
-def friction_under(law, rate, state):
-    """Return mu of ln V (V in m/s) and s."""
-    return friction_at(law, rate + exponent(law, state))
-
-
 def driven(one, rate, dt, steps, h):
     """Yield the shear traction (Pa) and history of a joint whose faces are moved at a rate, m/s."""
     point, slip = at_point(one), (rate * dt, 0.0)
@@ -43,7 +38,8 @@ def steady(one, rate):
     """Return the history of steady slip at a rate, m/s."""
     law, _ = at_point(one)
     state = log(LENGTH / rate / law.initial_state)
-    elastic = PRESSURE * friction_under(law, log(rate), state) / law.shear_stiffness
+    friction = friction_at(law, log(rate) + exponent(law, state))
+    elastic = PRESSURE * friction / law.shear_stiffness
     return Point(0.0, elastic, 0.0, 0.0, state)
 
 

@@ -237,9 +237,8 @@ def test_shear_turns_and_grows_with_the_pressure_once_it_slips():
     """At 3-4-5 on the surface: no stiffness along the slip, tau / |T*| of it across, and
     friction carries the normal stiffness over."""
     at = (1.2 * LIMIT, -1.6 * LIMIT)  # twice the limit, towards (0.6, -0.8)
-    nn, xn, zn, *shear, _, _ = tangent(
-        *at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), DT, Point(), 0.0
-    )
+    found = tangent(*at_point(COULOMB), CLOSED, 0.0, at, (0.0, 0.0), DT, Point(), 0.0)
+    nn, xn, zn, *shear, _, _ = found
     n = np.array([-0.6, 0.8])
     assert nn == -9e9
     assert [xn, zn] == pytest.approx(0.5 * -9e9 * n, rel=1e-12)

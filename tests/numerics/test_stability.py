@@ -73,6 +73,5 @@ def struck(created):
 def test_energy_from_nowhere_is_found_in_the_sample_that_has_it(energy, found):
     held = guard(1.0)
     audit(held, energy, 0, energy.shape[1], 20)
-    assert held.found.tolist() == (
-        [found, ENERGY, found - EVERY - 1] if found > 0 else [-1, SPEED, -1]
-    )
+    expected = [found, ENERGY, found - EVERY - 1] if found > 0 else [-1, SPEED, -1]
+    assert held.found.tolist() == expected

@@ -126,9 +126,7 @@ def test_a_mirrored_domain_is_cut_into_mirrored_blocks(domain, axis):
     dim, sets = domain
     flip, move = np.ones(dim), np.zeros(dim)
     flip[axis], move[axis] = -1, SIZE[axis]
-    mirrored = [
-        replace(one, normal=one.normal * flip, through=one.through * flip + move) for one in sets
-    ]
+    mirrored = [replace(s, normal=s.normal * flip, through=s.through * flip + move) for s in sets]
     one, other = blocks(dim, sets), blocks(dim, mirrored)
     assert one.count == other.count and len(one.contacts) == len(other.contacts)
     centre = one.centroid * flip + move

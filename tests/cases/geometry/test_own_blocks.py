@@ -220,6 +220,7 @@ PRISM = [*ELL, *((x, y, 1) for x, y, _ in ELL)], [(5, 4, 3, 2, 1, 0), tuple(rang
 MESH = {"vertex": {"0": {"x": 0, "y": 0, "z": 0}}, "face": {}}
 
 CUBE = cube((0, 0, 0))[0]
+WITHIN = square(0.5, 0.5)
 WARPED = [*CUBE[:6], (1, 1, 1.5), CUBE[7]]
 FLAT = [(1, 0, 0), (2, 0, 0), (3, 0, 0)], [(0, 1, 2)]
 TURNED = [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
@@ -232,11 +233,7 @@ BAD = {
     "not convex, in space": ("a.obj", obj(PRISM), "'0' is not convex, or open, or has"),
     "crossed": ("a.obj", obj(([*TETRA[:3], (1, 1, 0)], [(0, 1, 2, 3)])), "is not convex"),
     "flat": ("a.obj", obj(square(0, 0), FLAT), "'1' is flat"),
-    "overlap": (
-        "a.obj",
-        obj(square(0, 0), square(0.5, 0.5)),
-        "'0' and '1' overlap near [0.75, 0.75]",
-    ),
+    "overlap": ("a.obj", obj(square(0, 0), WITHIN), "'0' and '1' overlap near [0.75, 0.75]"),
     "twice": ("a.obj", obj(square(0, 0), square(0, 0)), "'0' and '1' overlap"),
     "inside": ("a.obj", obj((CUBE, SIDES), cube((0, 0, 0), (0.5, 0.5, 0.5))), "overlap"),
     "not plane": ("a.obj", obj((WARPED, SIDES)), "'0' has a face that is not plane near ["),
@@ -286,7 +283,6 @@ def test_a_face_that_is_touched_in_its_middle_is_one_of_both(tmp_path):
 
 
 def test_openings_are_sides_from_left_to_right(tmp_path):
-    """A frame of two windows."""
     frame = [square(x, y) for x in range(5) for y in range(3) if (x, y) not in ((1, 1), (3, 1))]
     (tmp_path / "frame.obj").write_text(obj(*frame))
     body = complex_with(tmp_path / "frame.obj")
@@ -302,9 +298,8 @@ def test_sets_that_are_not_told_apart_are_refused(tmp_path):
     (tmp_path / "a.obj").write_text(obj(square(0, 0), square(1, 0)))
     dips = np.radians([45.0, -45.0])
     normals = np.stack([-np.sin(dips), np.cos(dips)], axis=1)
-    with pytest.raises(
-        MeshError, match=r"near \[1, 0.5\] whose plane is as near to set 'a' as to 'b'"
-    ):
+    said = r"near \[1, 0.5\] whose plane is as near to set 'a' as to 'b'"
+    with pytest.raises(MeshError, match=said):
         complex_with(tmp_path / "a.obj", ["a", "b"], normals)
     body = complex_with(tmp_path / "a.obj", ["a"], normals[:1])
     assert body.joint_set[body.inner] == [0]
@@ -426,9 +421,7 @@ def test_what_lies_on_no_side_of_the_box_is_the_outline(tmp_path, scene_of):
         (obj(square(0, 0)), ON_STEP[:1], {}, "must have 2 numbers: the domain is in the plane"),
     ],
 )
-def test_scenes_of_blocks_that_do_not_fit_are_refused(
-    blocks, points, sides, words, tmp_path, scene_of
-):
+def test_blocks_that_do_not_fit_are_refused(blocks, points, sides, words, tmp_path, scene_of):
     (tmp_path / "wall.obj").write_text(blocks)
     with pytest.raises(SceneError) as error:
         scene_of(tmp_path / "wall.obj", points, **sides)

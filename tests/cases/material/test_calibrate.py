@@ -20,13 +20,8 @@ from jointwave.cases.schema.damping import Damping, Rayleigh
 from jointwave.cases.schema.law_parts import UNLIMITED
 from jointwave.cases.schema.scene import Scene
 
-ROCK = {
-    "density": 2000.0,
-    "equivalent_modulus": 8e9,
-    "equivalent_poisson": 0.25,
-    "intact_modulus": 2.4e10,
-    "intact_poisson": 0.2,
-}
+ROCK = {"density": 2000.0, "equivalent_modulus": 8e9, "equivalent_poisson": 0.25}
+ROCK |= {"intact_modulus": 2.4e10, "intact_poisson": 0.2}
 #: y = 4.5 m comes first; K_n = 6e9 / 1.5 = 4e9, K'_n = 4e9 / (1 + 1.5 * 4e9 / 2.4e10) = 3.2e9.
 LAYER = {"y": 4.5, "spacing_stiffness": 6e9}
 SOFT = LAYER | {"damping_ratio": 0.05}

@@ -1,5 +1,7 @@
 """Effective media of joint sets: hand-worked numbers, invariance, and long waves through joints."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,7 +56,7 @@ def test_rotation_turns_all_waves_with_it():
         rng = np.random.default_rng(dimension)
         Q = np.linalg.qr(rng.normal(size=(dimension, dimension)))[0]
         sets, n = random_sets(dimension), rng.normal(size=(20, dimension))
-        turned = [JointSet(Q @ s.normal, s.normal_compliance, s.shear_compliance) for s in sets]
+        turned = [replace(one, normal=Q @ one.normal) for one in sets]
         one = christoffel(stiffness(UNIT, sets, dimension), n)
         other = christoffel(stiffness(UNIT, turned, dimension), n @ Q.T)
         np.testing.assert_allclose(other, Q @ one @ Q.T, atol=1e-13)
@@ -63,9 +65,7 @@ def test_rotation_turns_all_waves_with_it():
 def test_normals_in_the_plane_give_the_plane_of_the_space():
     """Plane strain by two-component normals is the block 11, 22, 12 of the stiffness in space."""
     sets = random_sets(2)
-    raised = [
-        JointSet(np.append(s.normal, 0), s.normal_compliance, s.shear_compliance) for s in sets
-    ]
+    raised = [replace(one, normal=np.append(one.normal, 0)) for one in sets]
     C = stiffness(UNIT, raised, 3)
     np.testing.assert_allclose(C[np.ix_([0, 1, 5], [0, 1, 5])], stiffness(UNIT, sets), atol=1e-13)
 

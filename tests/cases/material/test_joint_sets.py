@@ -14,9 +14,8 @@ from jointwave.cases.schema.rock_mass import InSituStress
 def damped(rock_with, *sets, **tables):
     """Return the time constants of joints of 1e10 Pa/m in 40 m by 30 m of rock of 2500 kg/m3."""
     tables |= {"domain": {"size": [40.0, 30.0]}}
-    return set_time_constants(
-        rock_with(*sets, rock={"density": 2500.0, "intact_modulus": 5e10}, **tables)
-    )
+    tables |= {"rock": {"density": 2500.0, "intact_modulus": 5e10}}
+    return set_time_constants(rock_with(*sets, **tables))
 
 
 def test_the_mass_of_a_dashpot_is_that_of_the_rock_from_joint_to_joint(rock_with):

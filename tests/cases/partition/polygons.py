@@ -7,19 +7,11 @@ import numpy as np
 
 from jointwave.cases.geometry.cell_complex import OUTSIDE
 from jointwave.cases.geometry.locate import blocks_at
-from jointwave.cases.geometry.periodic import contacts_across
 
 
 def block_at(found, points):
     """The first block that each point lies in, or OUTSIDE."""
     return np.array([min(some, default=OUTSIDE) for some in blocks_at(found, points)])
-
-
-def periodic_contacts(found, side, sets):
-    """Contacts across the left and the right, or the bottom and the top."""
-    pair = {"left": ("left", "right"), "bottom": ("bottom", "top")}[side]
-    names = [one.name for one in sets]
-    return contacts_across(found, int(side == "bottom"), pair, names)
 
 
 def closed(found, tolerance):

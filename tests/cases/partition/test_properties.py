@@ -68,14 +68,9 @@ def partition(domain, sets):
 
 
 #: Joints beside others of their direction, which they end at.
-PARALLEL = [
-    JointSet(name="set 0", dip=2.0, spacing=1.0, through=[2.0, 1.5], **LAW),
-    JointSet(
-        **{"name": "set 1", "dip": 2.0, "spacing": 2.0, "through": [2.0, 1.0]},
-        **{"ends_at": ["set 0"], "offset": 0.75},
-        **LAW,
-    ),
-]
+PARALLEL = [JointSet(name="set 0", dip=2.0, spacing=1.0, through=[2.0, 1.5], **LAW)]
+ENDING = {"spacing": 2.0, "through": [2.0, 1.0], "ends_at": ["set 0"], "offset": 0.75}
+PARALLEL.append(JointSet(name="set 1", dip=2.0, **ENDING, **LAW))
 
 domains = st.sampled_from([Domain(**keys, non_convex="cut", least_angle=0.5) for keys in DOMAINS])
 

@@ -9,9 +9,9 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError, Sliver
+from jointwave.cases.geometry.periodic import contacts_across
 from jointwave.cases.partition.scene import block_count, blocks_of_scene, partition_bytes
 from jointwave.cases.partition.scene import blocks_of_domain as cut
-from tests.cases.partition.polygons import periodic_contacts
 
 SIZE = {"size": [10.0, 6.0]}
 ROWS = {"dip": 0.0, "spacing": 1.0}
@@ -35,11 +35,7 @@ REFUSED = {
     "a spacing beyond the domain": ([wide(7.0)], SIZE, MISSED),
     "the same with scatter": ([wide(7.0) | SCATTERED], SIZE, MISSED),
     "joints along those of another set": ([ROWS, wide(2.0)], SIZE, "joint_sets[1]: does not cut"),
-    "a joint outside": (
-        [AWAY],
-        SIZE,
-        "joint_sets[0].through: must lie in the domain, near [20, 3]",
-    ),
+    "joint outside": ([AWAY], SIZE, "joint_sets[0].through: must lie in the domain, near [20, 3]"),
     "a tunnel inside a row": ([ROWS], TUNNEL, UNCUT),
     "an outline that is not convex": ([ROWS], DENT, "corner of the outline ... near [4, 3.5]"),
     "a row that is too thin": ([ROWS, NEAR], SIZE | {"slivers": "refuse"}, THIN),
@@ -49,9 +45,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("sets", "domain", "words"), REFUSED.values(), ids=REFUSED)
-def test_a_scene_that_cannot_be_cut_is_refused_in_a_line(
-    rock_with, sets, domain, words, monkeypatch
-):
+def test_what_cannot_be_cut_is_refused_in_a_line(rock_with, sets, domain, words, monkeypatch):
     monkeypatch.setenv("JOINTWAVE_MEMORY", "0.5")
     with pytest.raises(SceneError) as error:
         blocks_of_scene(rock_with(*sets, domain=domain))
@@ -127,9 +121,10 @@ def test_a_corner_of_less_than_the_least_angle(rectangle, joints):
         cut(rectangle(10.0, 6.0), on)
 
 
-def across(rectangle, sets, size, axis="left", **keys):
+def across(rectangle, sets, size, pair=("left", "right"), **keys):
     """Return the contacts across periodic sides of a domain."""
-    return periodic_contacts(cut(rectangle(*size, **keys), sets), axis, sets)
+    found, names = cut(rectangle(*size, **keys), sets), [one.name for one in sets]
+    return contacts_across(found, int("top" in pair), pair, names)
 
 
 def test_contacts_across_periodic_sides(rectangle, joints):
@@ -141,7 +136,7 @@ def test_contacts_across_periodic_sides(rectangle, joints):
     assert len(found) == 6 and set(found.joint_set) == {1}
     assert (found.normal == [1.0, 0.0]).all() and (found.ends[..., 0] == 10.0).all()
     assert (found.ends[:, 1, 1] > found.ends[:, 0, 1]).all()
-    assert len(across(rectangle, [rows, columns], (10.0, 6.0), "bottom")) == 5
+    assert len(across(rectangle, [rows, columns], (10.0, 6.0), ("bottom", "top"))) == 5
     bricks = joints("bricks", 0.0, spacing=1.0, ends_at=["columns"], offset=0.5)
     found = across(rectangle, [columns, bricks], (4.0, 4.0))
     assert len(found) == 8 and found.area == pytest.approx(np.full(8, 0.5))

@@ -4,13 +4,8 @@ import pytest
 
 from jointwave.cases import load_tables
 
-JOINT = {
-    "name": "joint",
-    "dip": 30.0,
-    "through": [6.0, 5.0],
-    "normal_stiffness": 1e10,
-    "shear_stiffness": 4e9,
-}
+JOINT = {"name": "joint", "dip": 30.0, "through": [6.0, 5.0]}
+JOINT |= {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 TABLES = {
     "title": "blocks",
     "domain": {"size": [12.0, 10.0]},

@@ -8,6 +8,7 @@ from jointwave.dem.kernel.model import state_at_rest
 from jointwave.dem.prepare import prepared
 from jointwave.dem.relaxation import start
 from tests.cases.material.block_stiffness import stiffness
+from tests.turned import turned
 
 STRESS = {"xx": 4e6, "yy": 5e6, "xy": 5e5}
 TENSOR = np.array([[4e6, 5e5], [5e5, 5e6]])
@@ -81,40 +82,12 @@ def test_a_small_wave_is_not_hidden_by_what_is_out_of_balance(excavated, wave):
     assert np.abs(found - exact).max() < 1e-3 * np.abs(exact).max()
 
 
-def image(scene, matrix):
-    """Return tables of a scene whose places and vectors a rotation or a reflection maps."""
-    flips = np.linalg.det(matrix)
-    stress = matrix @ TENSOR @ matrix.T
-    angle = np.degrees(np.arctan(matrix[1, 0] / matrix[0, 0]))
-
-    def place(points):
-        return (np.array(points) @ matrix.T).tolist()
-
-    domain = {"size": None, "outline": place(scene.domain.corners), "openings": [place(HOLE)]}
-    return {
-        "domain": domain,
-        "joint_sets": [
-            one.model_dump(exclude_none=True)
-            | {"dip": flips * one.dip + angle, "through": place(one.through)}
-            for one in scene.joint_sets
-        ],
-        "waves": [
-            one.model_dump(exclude_none=True)
-            | {"direction": place(one.direction), "through": place(one.through)}
-            for one in scene.waves
-        ],
-        "prestress": {"xx": stress[0, 0], "yy": stress[1, 1], "xy": stress[0, 1]},
-        "boundaries": dict.fromkeys(("left", "right", "bottom", "top")) | {"outline": "quiet"},
-        "record": {"points": place(scene.record.points), "joints": place(scene.record.joints)},
-    }
-
-
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_scene_in_other_axes_records_the_same(mirrored, excavated, wave):
     """To 1e-12 of the motion and of the stress, which the relaxation's tolerance is below."""
     matrix = TURN @ np.diag([-1.0, 1.0]) if mirrored else TURN
     own = excavated(SLIPS, waves=[wave(direction=[0.6, 0.8], through=[0.0, 0.0])])
-    one, other = simulate(own), simulate(excavated(SLIPS, **image(own, matrix)))
+    one, other = simulate(own), simulate(turned(own, matrix))
     assert one.static_steps > 0 and np.abs(one.slip).max() > 1e-6
     size = np.abs(one.velocity.values).max()
     assert np.abs(one.velocity.values @ matrix.T - other.velocity.values).max() < 1e-12 * size

@@ -1,6 +1,5 @@
 """Rigid blocks of regions of unlike rock: layers against the exact waves in them."""
 
-import numpy as np
 import pytest
 
 from jointwave.cases.errors import SceneError
@@ -9,6 +8,7 @@ from jointwave.compare.engines import solve
 from jointwave.compare.exact.rock_mass.field import field_of
 from jointwave.compare.misfit.metrics import relative_l2
 from jointwave.dem import simulate
+from jointwave.results.dataset import energy_residual
 
 SOFT = {"name": "soft", "through": [0.0, 8.0], "density": 2200.0, "intact_modulus": 2e10}
 HARD = {"name": "hard", "through": [0.0, 14.0], "density": 2900.0, "intact_modulus": 7e10}
@@ -41,13 +41,8 @@ def misfits(scene):
     exact = solve("parallel-joints", alone(scene))
     found = simulate(scene, incident=field_of(alone(scene)))
     axis, jump = (1, "gap") if scene.waves[0].kind == "P" else (0, "slip")
-    energy = found.energy.values
-    lost = np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() / np.abs(energy).max()
-    return (
-        relative_l2(found.velocity.values[..., axis], exact.velocity.values[..., axis]),
-        relative_l2(found[jump].values, exact[jump].values),
-        lost,
-    )
+    moved = relative_l2(found.velocity.values[..., axis], exact.velocity.values[..., axis])
+    return moved, relative_l2(found[jump].values, exact[jump].values), energy_residual(found)
 
 
 def alone(scene):
@@ -105,15 +100,9 @@ def test_an_outline_in_a_lattice_closes_its_ledger(rock_mass, wave):
         "numerics": {"dem": {"block": 0.5}},
     }
     lens = {"name": "lens", "outline": corners}
-    plain, same, soft = (
-        simulate(x, incident=field_of(x))
-        for x in (
-            rock_mass(**tables),
-            rock_mass(**tables, regions=[lens]),
-            rock_mass(**tables, regions=[lens | {"intact_modulus": 1e10}]),
-        )
-    )
+    regions = ([], [lens], [lens | {"intact_modulus": 1e10}])
+    scenes = (rock_mass(**tables, regions=one) for one in regions)
+    plain, same, soft = (simulate(x, incident=field_of(x)) for x in scenes)
     assert relative_l2(same.velocity.values, plain.velocity.values) < 0.06
     assert relative_l2(soft.velocity.values, plain.velocity.values) > 0.3
-    energy = soft.energy.values
-    assert np.abs(energy[:-1].sum(axis=0) - energy[-1]).max() < 1e-11 * np.abs(energy).max()
+    assert energy_residual(soft) < 1e-11

@@ -145,9 +145,7 @@ def struck(pillar, tmp_path):
     return scene
 
 
-@pytest.mark.parametrize(
-    ("direction", "quantity"), [([0, 1, 0], "stress"), ([0.6, 0, -0.8], "shear")]
-)
+@pytest.mark.parametrize("direction, quantity", [([0, 1, 0], "stress"), ([0.6, 0, -0.8], "shear")])
 def test_a_loaded_face(struck, direction, quantity):
     """A free one carries the load itself, not its mean over the step, which is of first order where
     the load bends within steps. A quiet one is of second order, at the face and between it and the

@@ -92,7 +92,6 @@ def test_a_row_without_points_has_no_rotations(pillar):
 
 
 def test_a_row_of_small_rotations_that_turns_too_far_is_refused(row):
-    """The line names the key, the block, its angle and the remedy."""
     twist = {"shape": "step", "direction": [0, 1, 0], "arm": 0.1, "amplitude": 1e6}
     remedy = r"motion\.rotation .* turned .* motion.rotation = 'finite'"
     with pytest.raises(SceneError, match=remedy):

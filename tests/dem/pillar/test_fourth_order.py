@@ -123,7 +123,6 @@ def test_result_says_how_it_was_stepped(fourth, pillar):
     ],
 )
 def test_refuses_what_it_cannot_step(fourth, changes, name):
-    """One line with the key, the value and what the scene calls for."""
     refused = rf"'fourth-order': does not support {name}"
     with pytest.raises(SceneError, match=rf"numerics\.dem\.scheme = {refused}"):
         fourth(0.3, **changes)

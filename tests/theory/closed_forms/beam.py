@@ -20,15 +20,13 @@ def euler_bernoulli(modulus: float, density: float, height: float, length: float
     return BETA**2 * _scale(modulus, density, height, length)
 
 
-def timoshenko(
-    modulus: float, poisson: float, density: float, height: float, length: float
-) -> float:
+def timoshenko(modulus: float, nu: float, density: float, height: float, length: float) -> float:
     """Return omega (rad/s) of a rectangular beam with shear and rotary inertia."""
     from scipy.optimize import brentq
 
-    kappa = 10 * (1 + poisson) / (12 + 11 * poisson)
+    kappa = 10 * (1 + nu) / (12 + 11 * nu)
     r2 = height**2 / (12 * length**2)
-    s2 = r2 * 2 * (1 + poisson) / kappa
+    s2 = r2 * 2 * (1 + nu) / kappa
 
     def balance(b: float) -> float:
         root = sqrt((r2 - s2) ** 2 + 4 / b**2)

@@ -42,11 +42,7 @@ def spectral_radius(constants: Constants, x: Values) -> np.ndarray:
 
 
 def response(
-    constants: Constants,
-    omega: np.ndarray,
-    force: np.ndarray,
-    dt: float,
-    xi: Values = 0.0,
+    constants: Constants, omega: np.ndarray, force: np.ndarray, dt: float, xi: Values = 0.0
 ) -> Motion:
     """Return the exact discrete motion of modes from rest: the method itself, step by step.
 
