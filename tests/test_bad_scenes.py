@@ -108,6 +108,7 @@ MISTAKES = {
         "no load.period": "load.shape = 'sine'",
         "load.shape = 'step' -> load.period = 0.01": "no meaning",
         "load.shape = 'gabor'; load.amplitude = 1.0 -> load.cycles": REQUIRED,
+        "load.amplitude = 1.1e+30": "between 1e-30 and 1e30",
         "load.rise = 0.1": "has no meaning for shape 'sine'",
         "load.direction = [0, 0, 0]": "unit vector",
         "load.direction = [0, 1]": "3 numbers",

@@ -1,4 +1,4 @@
-"""The same scene gives the same bits: in another process, on any number of threads."""
+"""The same scene gives the same bits in another process, on threads too."""
 
 import json
 import os
@@ -27,7 +27,6 @@ ROW = {
     "record.stress": [2.0, 32.0, 320.0],
     "record.velocity": [0.25, 31.9],
 }
-THREADS = {f"{count} threads": count for count in (1, 3)}
 
 #: Scenes of each engine and scheme: who solves them, and what is changed.
 RUNS = {
@@ -35,7 +34,7 @@ RUNS = {
     "blocks, fourth order": ("dem", {"numerics.dem.scheme": "fourth-order"}),
     "rock, explicit": ("continuum-jointed", ROCK | {"numerics.continuum.scheme": "explicit"}),
     "rock, implicit": ("continuum-jointed", ROCK | {"numerics.continuum.scheme": "implicit"}),
-    **{name: ("dem", ROW | {"numerics.dem.threads": n}) for name, n in THREADS.items()},
+    "blocks on threads": ("dem", ROW | {"numerics.dem.threads": 3}),
 }
 
 RUN_ALL = """
@@ -92,11 +91,3 @@ def test_the_last_bit_of_a_load_is_told():
         solve("dem", load_variant(find(SCENE), "", SHORT | {"load.amplitude": x})) for x in loads
     )
     assert bits(one["stress"]) != bits(other["stress"])
-
-
-def test_threads_change_no_bit_of_a_run(results):
-    one, other = (results[0][name] for name in THREADS)
-    assert (one.attrs["threads"], other.attrs["threads"]) == (1, 3)
-    energy = one.energy.values  # the ledger's sums have another order
-    assert abs(other.energy.values - energy).max() < 1e-13 * abs(energy).max()
-    assert_same_bits(one.drop_vars("energy"), other.drop_vars("energy"))

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from jointwave.cases.read import load_tables
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.continuum.space.model import Body
+from tests.rocks import rock
 
 STIFFNESS = 2e10, 8e9  # of joints along the normal and in shear, Pa/m
 LAME, SHEAR = 5e10 * 0.2 / (1.2 * 0.6), 5e10 / 2.4  # of the rock, Pa
@@ -20,16 +20,12 @@ BLOW = {"shape": "sine", "amplitude": 1e5, "period": 1e-3}
 def rock_mass(*joints, dim=2, continuum=None, **tables) -> RockMass:
     """Return a scene in 6 m x 4 m, or 6 m x 4 m x 5 m, of rock."""
     law = dict(zip(("normal_stiffness", "shear_stiffness"), STIFFNESS, strict=True))
-    table: dict[str, Any] = {
-        "title": "a rock mass",
-        "domain": {"size": [6.0, 4.0, 5.0][:dim]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [{"name": f"set {k}", **law, **one} for k, one in enumerate(joints)],
+    own: dict[str, Any] = {
         "time": {"duration": 2e-3},
         "record": {"points": [[2.0, 1.5, 1.0][:dim]]},
         "numerics": {"continuum": {"size": 1.5, "order": 1, **(continuum or {})}},
     }
-    return load_tables({**table, **tables})
+    return rock([6.0, 4.0, 5.0][:dim], joints, law, **own | tables)
 
 
 def oblique(dim: int) -> list[float]:

@@ -9,10 +9,10 @@ Rock masses in space are the same ones in the plane, and turn about the vertical
 import numpy as np
 import pytest
 
-from jointwave.cases.read import load_tables
 from jointwave.continuum.plan import plan_of
 from jointwave.continuum.run import simulate
 from tests.continuum.bodies import STIFFNESS
+from tests.rocks import rock
 
 ROUND_OFF = 1e-11
 
@@ -148,21 +148,16 @@ STRESSES = {"xx": "xx", "yy": "zz", "xy": "xz"}
 def slice_of(size, at, across, way, sides, **continuum):
     """Return four blocks 2 m long in 4 m x 3 m, cut across a direction, shaken through a quiet
     bottom; at : of a place along that direction and its height."""
-    bed = {"name": "bed", "dip": 0.0, "through": at(0.0, 1.5), **SPRINGS}
-    head = {"name": "head", "dip": 90.0, "through": at(2.0, 0.0), **across, **SPRINGS}
+    sets = [{"dip": 0.0, "through": at(0.0, 1.5)}, {"dip": 90.0, "through": at(2.0, 0.0)} | across]
     shape = {"shape": "ricker", "amplitude": 0.1, "period": 2e-3, "quantity": "velocity"}
-    table = {
-        "title": "a slice",
-        "domain": {"size": size},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [bed, head],
-        "loads": [{"kind": "base", "side": "bottom", "direction": way, **shape}],
-        "boundaries": sides,
-        "time": {"duration": 5e-3},
-        "record": {"points": [at(0.7, 0.6), at(3.3, 2.4)], "joints": [at(1.0, 1.5)]},
-        "numerics": {"continuum": {"size": 1.0, **continuum}},
-    }
-    return load_tables(table)
+    return rock(
+        *(size, sets, SPRINGS),
+        loads=[{"kind": "base", "side": "bottom", "direction": way, **shape}],
+        boundaries=sides,
+        time={"duration": 5e-3},
+        record={"points": [at(0.7, 0.6), at(3.3, 2.4)], "joints": [at(1.0, 1.5)]},
+        numerics={"continuum": {"size": 1.0, **continuum}},
+    )
 
 
 def same(found, expected, tolerance):

@@ -25,7 +25,7 @@ from jointwave.dem.sides.boundaries import (
 )
 from jointwave.dem.sides.domain import incoming, load_pattern
 from jointwave.dem.sides.loads import Loads
-from tests.dem.rocks import rock
+from tests.rocks import rock
 
 SIZE = np.array([3.0, 2.0, 2.5])
 SIDES = ("left", "right", "front", "back", "bottom", "top")

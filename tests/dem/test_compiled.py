@@ -4,7 +4,7 @@ import pytest
 
 from jointwave.dem import simulate
 from jointwave.dem.kernel import leapfrog
-from tests.dem.rocks import rock
+from tests.rocks import rock
 
 SEVERAL = r" <\d+ x double>"  # of several contacts at once
 SQRT = r"(?:tail )?call \S+ @llvm\.sqrt\S*"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointwave.dem.prepare import prepared
-from tests.dem.rocks import rock
+from tests.rocks import rock
 
 ASKEW = [{"dip": 15.0, "dip_direction": 40.0}, {"dip": 80.0, "dip_direction": 100.0}]
 ASKEW += [{"dip": 60.0, "dip_direction": 200.0}]

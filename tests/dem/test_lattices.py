@@ -14,7 +14,7 @@ from jointwave.cases.schema.domain import Domain
 from jointwave.dem.kernel.leapfrog import march
 from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
-from tests.dem.rocks import rock
+from tests.rocks import rock
 
 SIDE, DENSITY, STIFFNESS = 2.0, 2500.0, (3e9, 1.1e9)  # m, kg/m3; normal and in shear, Pa/m
 COUNT = {2: 12, 3: 6}

@@ -31,7 +31,7 @@ from jointwave.dem.sides.boundaries import freedoms as freedoms_of
 from jointwave.results.dataset import dataset
 from jointwave.results.snapshots import SnapshotRecorder, snapshots_of
 from jointwave.results.stress import stress_components
-from tests.dem.rocks import rock
+from tests.rocks import rock
 
 WALL = Path(__file__).parents[2] / "cases/rock-mass/masonry-wall.toml"
 SIZE, TOLERANCE = np.array([6.0, 5.0, 4.0]), 1e-9

@@ -10,7 +10,7 @@ from jointwave.dem.kernel.leapfrog import march
 from jointwave.dem.kernel.model import samples_for, state_at_rest
 from jointwave.dem.prepare import prepared
 from jointwave.results.dataset import energy_residual
-from tests.dem.rocks import rock
+from tests.rocks import rock
 
 DAMPED, SLIPS = {"damping_ratio": 0.1}, {"friction_angle": 20.0, "tension": False}
 STIFF = {"normal_stiffness": 2e10, "shear_stiffness": 8e9}

@@ -25,6 +25,7 @@ from jointwave.cases.material.contact_points import lever
 from jointwave.cases.read import load_tables
 from jointwave.cases.warnings import warnings
 from tests.field_cases.scenes import stands
+from tests.rocks import rock
 
 RADIUS, VOUSSOIRS = 10.0, 17  # m
 ANGLES = np.pi * np.arange(VOUSSOIRS + 1) / VOUSSOIRS
@@ -157,19 +158,14 @@ def wedge(friction, normals):
     wedge fixed at sides; friction : a tangent."""
     law = {"normal_stiffness": 1e10, "shear_stiffness": 1e9, "tension": False}
     law |= {"friction_angle": np.degrees(np.arctan(friction)).item(), "through": [5.0, 5.0, 3.5]}
-    tables = {
-        "title": "wedge",
-        "domain": {"size": [10.0, 10.0, 6.0]},
-        "rock": {"density": 2600.0, "intact_modulus": 5e10, "intact_poisson": 0.2},
-        "joint_sets": [
-            {"name": name, "dip": np.degrees(np.arccos(n[2])).item(), **law}
-            | {"dip_direction": np.degrees(np.arctan2(n[0], n[1])).item() % 360}
-            for name, n in zip("AB", normals, strict=True)
-        ],
-        "boundaries": dict.fromkeys(("left", "right", "bottom"), "fixed"),
-        "record": {"points": [[5.0, 5.0, 5.0]], "interval": 1e-3},
-    }
-    return jw.load(SHORT | tables)
+    sets = [
+        {"dip": np.degrees(np.arccos(n[2])).item()}
+        | {"dip_direction": np.degrees(np.arctan2(n[0], n[1])).item() % 360}
+        for n in normals
+    ]
+    held = {"boundaries": dict.fromkeys(("left", "right", "bottom"), "fixed")}
+    record = {"points": [[5.0, 5.0, 5.0]], "interval": 1e-3}
+    return rock([10.0, 10.0, 6.0], sets, law, **SHORT | held, record=record)
 
 
 def test_a_wedge_stands_above_the_limit_and_slides_below():

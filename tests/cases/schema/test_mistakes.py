@@ -196,11 +196,6 @@ IN_SPACE = {
 CASES = [(PLANE, *one) for one in IN_PLANE.items()] + [(SPACE, *one) for one in IN_SPACE.items()]
 
 
-@pytest.mark.parametrize("good", [PLANE, SPACE], ids=["plane", "space"])
-def test_the_good_scene_is_good(good):
-    assert load_tables(good).in_space == (good is SPACE)
-
-
 @pytest.mark.parametrize(("good", "mistake", "words"), CASES, ids=[one[1] for one in CASES])
 def test_a_mistake_is_one_line(spoilt, in_toml, good, mistake, words):
     text, named = spoilt(in_toml(good), mistake)

@@ -32,7 +32,7 @@ def test_snapshots_are_the_motion_of_the_blocks_and_change_nothing(crossed):
     areas = np.abs(np.cross(*np.moveaxis(edges, 1, 0))[:, 2]) / 2
     assert areas.sum() == pytest.approx(120, rel=1e-12)
     corners = np.insert(found.points[found.cells][..., :2], 2, 1.0, axis=2).swapaxes(1, 2)
-    shares = np.linalg.solve(corners, np.array([[4.3], [2.1], [1.0]]))
+    shares = np.linalg.solve(corners, np.array([[[4.3], [2.1], [1.0]]]))
     (cell,) = np.flatnonzero((shares > 0).all(axis=(1, 2)))
     share = shares[cell, :, 0]
     for name in ("velocity", "displacement"):
