@@ -187,7 +187,9 @@ def in_toml():
 
     def text(value):
         if isinstance(value, dict) and not value.keys().isdisjoint(("title", "time")):
-            return "".join(f"{json.dumps(key)} = {inline(one)}\n" for key, one in value.items())
+            bare = [k if k.isascii() and k.isidentifier() else json.dumps(k) for k in value]
+            each = zip(bare, value.values(), strict=True)
+            return "".join(f"{key} = {inline(one)}\n" for key, one in each)
         return inline(value)
 
     return text
