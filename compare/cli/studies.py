@@ -162,7 +162,9 @@ def fit(asked: Fit) -> None:
     if asked.dry:
         show_forecasts([fits.planned(scene, asked.free, solver)], asked.as_json)
         return
-    with terminal.progress(scene.name or scene.title) as advance:
+    with ExitStack() as held, terminal.progress(scene.name or scene.title) as advance:
+        if asked.out:
+            held.enter_context(locked(asked.out))
         found = fits.fit(scene, curves, asked.free, solver, advance)
     files = [write_csv(asked.out / "fit.csv", found.table.reset_index(), 12)] if asked.out else []
     values, waveforms = found.values.reset_index(), found.waveforms.astype({"place": str})

@@ -80,10 +80,16 @@ DRAWINGS, FILMS = (".pdf", ".svg", ".png"), (".mp4", ".gif")
 
 
 def check_out(path: Path, kinds: tuple[str, ...] = DRAWINGS) -> None:
-    """Raise SceneError if `--out` has another suffix, or names an existing file of another kind."""
+    """Raise SceneError if `--out` has another suffix, names an existing file of another kind, or is
+    in a folder that cannot be written."""
     if path.suffix not in kinds:
         raise SceneError("--out", str(path), None, f"must end in {' or '.join(kinds)}")
     refuse_foreign(path, BEGINS[path.suffix])
+    try:
+        tempfile.TemporaryFile(dir=next(x for x in path.absolute().parents if x.exists())).close()
+    except OSError as error:
+        allowed = f"cannot be written: {error.strerror}"
+        raise SceneError(str(path), "", None, allowed) from None
 
 
 def refuse_foreign(path: Path, begins: tuple[bytes, ...] = MAGIC) -> None:

@@ -38,6 +38,7 @@ BAD = [
     (("figure", SCENE, "--out", "figure.pdf", "--width", "3"), "width"),
     (("figure", SCENE, "--out", "taken.pdf", "--engine", "dem"), "would be overwritten"),
     (("figure", SCENE, "--out", "a.pdf", "--font-size", "40"), "--width: 90: must be at least 200"),
+    (("animate", SCENE, "--out", "/proc/no/a.gif"), "/proc/no/a.gif: cannot be written: "),
     (("picture", SCENE, "--map", "ppv"), f"--map: is of results: `jointwave run {SCENE} --set"),
     (("picture", SCENE, "--out", "a.gif"), "--out: a.gif: must end in .pdf or .svg or .png"),
     (("explain", "xyz", "--json"), "xyz: is neither a file nor a shipped scene"),
