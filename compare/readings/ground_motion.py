@@ -79,7 +79,7 @@ def arias(result: Recording, gravity: float = GRAVITY, quantity: str = "velocity
 
 def response_spectrum(
     result: Recording,
-    periods: Sequence[float] | np.ndarray,
+    periods: float | Sequence[float] | np.ndarray,
     damping: float = 0.05,
     quantity: str = "velocity",
 ) -> xr.Dataset:
@@ -94,7 +94,7 @@ def response_spectrum(
     periods : of the oscillator, s. damping : zeta, of critical, below 1. quantity : of a recording
     that does not name its own.
     """
-    periods = np.asarray(periods, dtype=float)
+    periods = np.atleast_1d(np.asarray(periods, dtype=float))
     if not 0 <= damping < 1:
         raise SceneError("response_spectrum", "damping", damping, "must be from 0 to below 1")
     if not (periods > 0).all():
