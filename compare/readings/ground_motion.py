@@ -94,26 +94,26 @@ def response_spectrum(
     periods : of the oscillator, s. damping : zeta, of critical, below 1. quantity : of a recording
     that does not name its own.
     """
-    periods = np.atleast_1d(np.asarray(periods, dtype=float))
+    T = np.atleast_1d(np.asarray(periods, dtype=float))
     if not 0 <= damping < 1:
         raise SceneError("response_spectrum", "damping", damping, "must be from 0 to below 1")
-    if not (periods > 0).all():
-        raise SceneError("response_spectrum", "periods", periods.min(), "must be positive")
+    if not (T > 0).all():
+        raise SceneError("response_spectrum", "periods", T.min(), "must be positive")
     found = recording(result, quantity)
     dt, accelerated = sampling(found), "acceleration" in found
     motion = _of(found, "acceleration" if accelerated else "velocity")
     ground = motion.values
     if not accelerated:
         ground = np.diff(ground, prepend=ground[..., :1], append=ground[..., -1:]) / dt
-    peaks = [_largest_displacement(ground, dt, 2 * pi / T, damping) for T in periods]
+    peaks = [_largest_displacement(ground, dt, w, damping) for w in 2 * pi / T]
     dims = (*map(str, motion.dims[:-1]), "period")
     units = {"displacement": "m", "pseudo_velocity": "m/s", "pseudo_acceleration": "m/s2"}
-    largest, omega = np.stack(peaks, axis=-1), 2 * pi / periods
+    largest, omega = np.stack(peaks, axis=-1), 2 * pi / T
     spectra = {
         name: (largest * omega**power, f"spectral {name.replace('_', '-')}", unit)
         for power, (name, unit) in enumerate(units.items())
     }
-    at = variables("period", {"period": (periods, "period of the oscillator", "s")})
+    at = variables("period", {"period": (T, "period of the oscillator", "s")})
     found = xr.Dataset(variables(dims, spectra), motion.isel(time=0, drop=True).coords)
     return found.assign_coords(at).assign_attrs(damping=damping)
 

@@ -70,6 +70,8 @@ def test_response_spectrum_of_a_sine():
     """Off by the straight lines of the velocity, (drive dt)^2 / 12, and peaks between samples."""
     periods, dt = np.array([0.25, 0.7, 1.0, 1.4, 3.0]), 0.002
     found = response_spectrum(sine(4, dt), periods, damping=0.05)
+    one = response_spectrum(sine(4, dt), periods[0], damping=0.05)
+    assert one.equals(found.isel(period=[0]))
     t = np.linspace(0, 7, 70001)
     exact = [np.abs(displacement_of_sine(t, 2 * np.pi / T, 0.05)).max() for T in periods]
     assert found.displacement.values.ravel() == pytest.approx(exact, rel=4e-4)
