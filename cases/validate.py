@@ -49,14 +49,18 @@ def validated(table: dict[str, Any], path: Path, given: frozenset[str]) -> Any:
     if "domain" in table and "pillar" in table:
         raise SceneError(where, "pillar", None, "give [pillar] or [domain], not both")
     model: Any = RockMass if "domain" in table else Scene
-    domain = table.get("domain")
-    size = domain.get("size") if isinstance(domain, dict) else None
+    domain = table["domain"] if isinstance(table.get("domain"), dict) else {}
+    size = domain.get("size")
     dimension = 3 if isinstance(size, list) and len(size) == 3 else 2
     context = {"folder": path.parent, "asked": asked, "dimension": dimension}
     try:
         scene = model.model_validate(spelled_out(table, where, context), context=context)
     except ValidationError as error:
-        raise all_of(_error(where, one, model) for one in error.errors()) from None
+        found = error.errors()
+        own = [one for one in found if one["loc"][:1] == ("domain",)]
+        if own and not {"size", "outline"} & set(domain):
+            found = own  # without its file, the dimension of other tables is not known
+        raise all_of(_error(where, one, model) for one in found) from None
     scene._where = where
     return checked(scene)
 

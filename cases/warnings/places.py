@@ -16,6 +16,7 @@ from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 
 NEAR = 0.05  # largest distance of a receiver from its joint, over the domain's size
+UNLIKE = 10.0  # ratio of spacings of a file's blocks and of the scene
 COINCIDENT = 1e-9  # distance below which joints coincide, over the domain's size
 
 
@@ -86,6 +87,21 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
         )
 
 
+def _of_spacings(scene: RockMass) -> Iterator[str]:
+    """Warn of spacings, by which joints have the compliance of the rock between them, that are far
+    from those of the blocks of a file: volume over area."""
+    cut = blocks_of_scene(scene) if scene.domain.blocks else None
+    for i, one in enumerate(scene.joint_sets if cut else ()):
+        assert cut is not None
+        area = float(cut.contacts.area[cut.contacts.joint_set == i].sum())
+        apart = float(cut.volume.sum()) / area if area else np.inf
+        if one.spacing and area and not 1 / UNLIKE < apart / one.spacing < UNLIKE:
+            yield (
+                f"joint_sets[{i}].spacing = {one.spacing:g} m, but its joints in domain.blocks are "
+                f"about {apart:.3g} m apart; {apart:.3g} mm is {apart / 1e3:.3g} m"
+            )
+
+
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:
     """Warn of receivers on joints, where velocity and stress may jump, and of forces there."""
     read = "where velocity, displacement and the stress along it are the mean of both sides"
@@ -130,6 +146,7 @@ def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
 RULES_OF_PLACES = (
     _of_joints_given_twice,
     _of_distances,
+    _of_spacings,
     _of_points_on_joints,
     _of_points_at_triangles,
 )

@@ -19,6 +19,7 @@ from jointwave.cases.gmsh_file import MeshError
 from jointwave.cases.partition.scene import blocks_of_scene
 from jointwave.cases.partition.shape import SIDES as SIDES_OF_BOX
 from jointwave.cases.partition.shape import shape_of
+from jointwave.cases.warnings import warnings
 
 TOLERANCE = 1e-9  # m
 
@@ -367,9 +368,9 @@ ON_STEP = [[0.5, 0.5, 0.9], [1.5, 0.5, 0.4]]
 def scene_of(rock_with):
     """A function of a file and receivers: blocks between beds and heads, on a fixed bottom."""
 
-    def scene(path, points, **sides):
+    def scene(path, points, sets=(BED, HEAD), **sides):
         return rock_with(
-            *(BED, HEAD),
+            *sets,
             folder=path.parent,
             domain={"blocks": path.name},
             gravity={},
@@ -419,6 +420,7 @@ def test_what_lies_on_no_side_of_the_box_is_the_outline(tmp_path, scene_of):
         (STEP, [[0.5, 0.5]], {}, "must have 3 numbers: the domain is in space"),
         (obj((CUBE, SIDES)), ON_STEP[:1], {"outline": "fixed"}, "is not a side of this"),
         (obj(square(0, 0)), ON_STEP[:1], {}, "must have 2 numbers: the domain is in the plane"),
+        (obj(cube((0, 0, 0)), cube((0.5, 0, 0))), ON_STEP[:1], {}, "overlap near"),
     ],
 )
 def test_blocks_that_do_not_fit_are_refused(blocks, points, sides, words, tmp_path, scene_of):
@@ -427,3 +429,15 @@ def test_blocks_that_do_not_fit_are_refused(blocks, points, sides, words, tmp_pa
         scene_of(tmp_path / "wall.obj", points, **sides)
     said = [str(one) for one in error.value.each]
     assert any(words in line for line in said) and "\n" not in "".join(said)
+    assert len(said) == 1 or "overlap" not in words  # the dimension of a file not read is unknown
+
+
+@pytest.mark.parametrize("unit, count", [(1.0, 0), (1e3, 2)])
+def test_blocks_far_from_the_spacing_of_their_sets_are_named(unit, count, tmp_path, scene_of):
+    """As those in millimetres are."""
+    solids = [[unit * face for face in faces] for faces in polygons(bricks())]
+    write_obj(tmp_path / "wall.obj", solids)
+    sets = BED | {"spacing": 0.5}, HEAD | {"spacing": 1.0}
+    scene = scene_of(tmp_path / "wall.obj", [[2.3, 0.5, 1.75]], sets)
+    found = [line for line in warnings(scene) if "in domain.blocks are about" in line]
+    assert len(found) == count and all("667 mm" in x or "1.14e+03 mm" in x for x in found)
