@@ -1,5 +1,4 @@
-"""Stress components: axial along one axis; xx, yy, xy in the plane; xx, yy, zz, xy, yz, xz in
-space."""
+"""Stress components: xx, yy, xy in the plane; xx, yy, zz, xy, yz, xz in space."""
 
 import numpy as np
 
@@ -7,19 +6,14 @@ from jointwave.results.labels import AXES
 
 
 def stress_components(dim: int) -> dict[str, tuple[int, int]]:
-    """Return the names of the stress components at a receiver with `dim` coordinates, with their
-    tensor indices; the only one along an axis, y, has no name."""
-    if dim == 1:
-        return {"": (1, 1)}
+    """Return the names of the stress components in `dim` dimensions, with their tensor indices."""
     pairs = [*((k, k) for k in range(dim)), *((0, 1), (1, 2), (0, 2))[: dim * (dim - 1) // 2]]
     return {AXES[i] + AXES[j]: (i, j) for i, j in pairs}
 
 
 def tensors(stress: np.ndarray) -> np.ndarray:
     """Return stress tensors [..., d, d] from their components [..., 1, 3 or 6]."""
-    if stress.shape[-1] == 1:
-        return stress[..., None]
-    dim = {3: 2, 6: 3}[stress.shape[-1]]
+    dim = {1: 1, 3: 2, 6: 3}[stress.shape[-1]]
     found = np.empty((*stress.shape[:-1], dim, dim))
     for k, (i, j) in enumerate(stress_components(dim).values()):
         found[..., i, j] = found[..., j, i] = stress[..., k]

@@ -21,7 +21,7 @@ from jointwave.results.stress import stress_components
 #: a receiver.
 COMPONENTS: dict[int, dict[str, tuple[str, ...]]] = {
     1: {
-        "stress": tuple(stress_components(1)),
+        "stress": ("",),
         "shear": ("x", "z"),
         **dict.fromkeys(("velocity", "displacement", "rotation"), AXES),
     },

@@ -33,7 +33,8 @@ class StressOfCells:
         each = np.repeat(corners, len(parts), axis=0)
         shape = len(corners), len(parts), *2 * (corners.shape[2],)
         self.inverse = np.linalg.inv(evaluation.jacobians(kind, each, at)).reshape(shape)
-        pairs = stress_components(len(found.scene.axes)).values()
+        axes = len(found.scene.axes)
+        pairs = [*stress_components(axes).values()] if axes > 1 else [(1, 1)]
         self.moduli, lag = -found.moduli(pairs)[found.of_cell], found.of_cells("time_constant")
         self.lag = lag[:, None, None] if lag.any() else None
         given = found.scene.prestress
