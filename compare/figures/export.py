@@ -159,4 +159,4 @@ def write_drawing(path: Path, figure: Figure, title: str = "", rc: dict[Any, Any
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind, {})
     with matplotlib.rc_context(rc | {"svg.hashsalt": title}):
         figure.savefig(content, format=kind, metadata={"Title": title} | undated)
-    return write(path, lambda place: place.write_bytes(content.getbuffer()))
+    return write(path, lambda place: place.write_bytes(content.getvalue()))

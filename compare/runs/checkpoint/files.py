@@ -73,7 +73,7 @@ class Checkpoints:
         np.savez(content, **{ABOUT: np.array(json.dumps(self.signature))}, **held)
         try:
             self.processes.together(
-                lambda: write(path, lambda place: place.write_bytes(content.getbuffer()))
+                lambda: write(path, lambda place: place.write_bytes(content.getvalue()))
             )
         except OSError:
             path.unlink(missing_ok=True)
