@@ -7,6 +7,7 @@ import numpy as np
 from jointwave.cases.geometry.periodic import of_all
 from jointwave.cases.incident import IncidentField
 from jointwave.cases.material.calibrate import calibrate
+from jointwave.cases.material.closure import closed_compliance
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.properties import strength_of
 from jointwave.cases.material.rock_mass import set_time_constants
@@ -22,6 +23,8 @@ from jointwave.continuum.space.model import Body, directions
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest, elastic_rest, holding, settled
 from jointwave.joints.law import Law, law, stiffest, uniform
+
+MOST = 0.01  # most of a joint's compliance that stays when it is closed
 
 
 def with_law(found: SceneBody) -> tuple[Body, Law | None]:
@@ -49,7 +52,9 @@ def with_law(found: SceneBody) -> tuple[Body, Law | None]:
     etas, shear = (None if one is None else one[which] for one in (etas, shear))
     own = law(normal[which], etas, tension[which], shear_stiffness=shear, **strengths)
     if own.maximum_closure is not None:
-        own = own._replace(rock_compliance=uniform(0.0 - less), rock_time_constant=uniform(lag))
+        rock = np.minimum(closed_compliance(scene), MOST / normal[which]) - less
+        lag = np.divide(-less * lag, rock, out=np.zeros(len(which)), where=rock != 0)
+        own = own._replace(rock_compliance=uniform(rock), rock_time_constant=uniform(lag))
     return body, own
 
 

@@ -11,8 +11,8 @@ Between rigid blocks the compliance c of the rock is in series with the joint: D
 
     c sigma^2 + (c s_m + d_m - D) sigma - s_m D = 0,
 
-and the only root with the sign of D is the traction. Between deformable rock c is a millionth of
-the joint's own compliance, which limits the stiffness near d_m to a million times the initial one.
+and the only root with the sign of D is the traction. Between deformable rock c is small
+(`cases.material.closure.closed_compliance`), which limits the stiffness near d_m.
 If the rock already includes the joint's compliance, c is negative, and the smaller root is the
 traction up to the stress at which d sigma / dD is infinite.
 

@@ -13,12 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from jointwave.cases.loads import velocity_of
+from jointwave.cases.loads import highest_frequency, velocity_of
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.pulse import Pulse
 
+DELAY = 5e-5  # of a wave by a closed joint, in its shortest periods
 SAMPLES = 10_001  # of a pulse, besides its breaks, to find its peak
 
 
@@ -73,6 +74,14 @@ def stresses(scene: AnyScene) -> tuple[float, float]:
     return (initial + weight, added) if scene.gravity.static else (initial, added + weight)
 
 
+def closed_compliance(scene: AnyScene) -> float:
+    """Return the compliance c (m/Pa) of closed joints between deformable rock: it delays a wave by
+    c Z / 2, `DELAY` of its shortest period, and is what faces bounce on that meet at its speed; 0
+    without a load."""
+    frequency = highest_frequency(scene)
+    return 0.0 if frequency is None else 2 * DELAY / (frequency * _impedance(scene))
+
+
 def _peak(pulse: Pulse, duration: float) -> float:
     """Return the largest magnitude of a pulse; for an acceleration, of its integral."""
     history = velocity_of(pulse, pulse.amplitude)
@@ -85,8 +94,7 @@ def _stress_of(pulse: Any, scene: Any) -> float:
     over the least joint spacing; at a pillar's start, at the edges of the section."""
     if pulse.kind == "load":
         if pulse.is_motion:
-            p = calibrate(scene).at_start
-            return sqrt((p.intact_modulus or p.modulus) * p.density)
+            return _impedance(scene)
         lever = sum(map(abs, pulse.at)) + (pulse.arm or 0.0)
         acts = 2 if pulse.quantity == "incident-stress" else 1
         return acts * (1 + 6 * lever / scene.pillar.side)
@@ -95,6 +103,14 @@ def _stress_of(pulse: Any, scene: Any) -> float:
     if pulse.quantity == "force":
         spacings = (one.spacing for one in scene.joint_sets if one.spacing)
         return 1 / min(spacings, default=scene.domain.extent.max())
+    return _impedance(scene)
+
+
+def _impedance(scene: AnyScene) -> float:
+    """Return the largest impedance of P waves in a scene's rock, of a pillar's start, Pa s/m."""
+    if scene.is_column:
+        p = calibrate(scene).at_start
+        return sqrt((p.intact_modulus or p.modulus) * p.density)
     from jointwave.cases.partition.joints import rocks_of  # with shapely
 
     return max(float(elastic_rock(one).p_impedance) for one in rocks_of(scene))
