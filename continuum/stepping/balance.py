@@ -49,8 +49,8 @@ class Balance:
     """The forces of a problem.
 
     damping, quiet : of rock with mass-proportional damping, and of quiet sides [freedoms,
-    freedoms], N s/m. free : freedoms that are not held. past : at the start. memory : function of
-    dt. springs : function of dt, in front of dashpots; None without. ends : freedoms of quiet sides
+    freedoms], N s/m. free : freedoms that are not held. carried : largest force of a point at
+    u = 0, N. past : at the start. memory : function of dt. springs : function of dt, in front of dashpots; None without. ends : freedoms of quiet sides
     [k, d].
     """
 
@@ -63,6 +63,9 @@ class Balance:
         self.damping = csr_matrix(problem.alpha * diags(body.mass) + body.damping)
         self.quiet = at_nodes(quiet.node, quiet.viscosity, n)
         self.springs = cache(quiet.springs) if quiet.springs else None
+        weight, carried = self.points.weight, np.abs(self.points.carried)
+        each = np.repeat(weight, self.dim)[: carried.size]  # empty without a prestress
+        self.carried = float((each * carried).max(initial=0.0))
         self.ends, self.memory = quiet.freedom, cache(partial(memory_of, problem.mechanisms))
         self.jumps = body.joints.matrix(n)
         history = np.zeros((0, 0))

@@ -75,9 +75,6 @@ class Implicit:
         self.now = Moment(u, v, a, copied(forces), np.zeros(4))
         self._factors: tuple[float, np.ndarray, Factors] | None = None
         self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
-        weight, carried = own.points.weight, np.abs(own.points.carried)
-        each = np.repeat(weight, own.dim)[: carried.size]  # empty without a prestress
-        self._carried = float((each * carried).max(initial=0.0))
 
     @property
     def u(self) -> np.ndarray:
@@ -179,7 +176,7 @@ class Implicit:
             inertia = own.mass * trial.a
             rest = (1 - alpha_f) * forces[0].whole + before - (1 - alpha_m) * inertia
             size = max(forces[0].size[0], now.forces.size[0], np.abs(inertia).max(initial=0.0))
-            weighs = np.abs(self._weighs * trial.u).max(initial=0.0) + self._carried
+            weighs = np.abs(self._weighs * trial.u).max(initial=0.0) + self.balance.carried
             return rest[free], RESIDUAL * size + LAST_DIGITS * weighs
 
         def correction(rest: np.ndarray) -> np.ndarray:

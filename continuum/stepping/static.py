@@ -166,7 +166,8 @@ class _Static:
             nonlocal after
             trial[free] = u
             found = own.forces(trial, still, trial - self.u, 1.0, self.past, still, share)
-            self.size = max(float(found.size[0]), float(np.abs(found.loads).max(initial=0.0)))
+            most = float(np.abs(found.loads).max(initial=0.0))
+            self.size = max(float(found.size[0]), most, own.carried)
             after, force = found.past, found.whole
             if self.hold is not None:
                 force = force - self.hold @ trial
