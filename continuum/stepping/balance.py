@@ -50,8 +50,8 @@ class Balance:
 
     damping, quiet : of rock with mass-proportional damping, and of quiet sides [freedoms,
     freedoms], N s/m. free : freedoms that are not held. carried : largest force of a point at
-    u = 0, N. past : at the start. memory : function of dt. springs : function of dt, in front of dashpots; None without. ends : freedoms of quiet sides
-    [k, d].
+    u = 0, N. past : at the start. memory : function of dt. springs : function of dt, in front of
+    dashpots; None without. ends : freedoms of quiet sides [k, d].
     """
 
     def __init__(self, problem: Problem) -> None:

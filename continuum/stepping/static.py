@@ -26,7 +26,7 @@ TOLERANCE = 1e-10  # of the residual, over the largest summed force
 LEAST_PART = 2.0**-4  # smallest increment, over the steady forces
 CREEP = 1e-2  # first drag, over the largest stiffness per mass: above all modes of joints
 MOST_LEFT = 1e-8  # most residual due to round-off of displacements, over the largest summed force
-ROUGH = 1e-3  # residual of a step against a drag, over the force of the drag
+ROUGH = 1e-3  # residual of a step over the force of its drag, or of round-off over all forces
 EASED = 8.0  # factor by which the drag falls after a step, or rises if one does not converge
 MOST_CREEPS = 400  # steps against a drag
 LEAST_DRAG = 1e-14  # as CREEP; above round-off
@@ -74,6 +74,10 @@ def settled(scene: AnyScene, problem: Problem, hold: csr_matrix | None = None) -
             still = done >= 1 and outcome.errors[0] <= outcome.tolerance
             done = min(done + part, 1.0)
             still = still or (done == 1 and problem.parts is None)
+        elif outcome.errors[-1] <= min(own.digits, ROUGH * own.size):
+            ratio = f"an out-of-balance ratio of {outcome.errors[-1] / own.size:.1e}"
+            why = f"round-off of displacements leaves {ratio}; rock is far stiffer than joints"
+            raise _refusal(scene, "has not come to rest under", why)
         elif part > LEAST_PART:
             part /= 2
         else:
@@ -136,7 +140,8 @@ class _Static:
     """The static forces of a problem, without dashpots and loads.
 
     u, past : the last state in balance. size : the largest summed force, N. stiffest : the largest
-    stiffness per mass, 1/s2. allowed : tolerance of the residual, N. moved : displacement times
+    stiffness per mass, 1/s2. digits : residual that round-off leaves, N. allowed : tolerance of the
+    residual, N. moved : displacement times
     drag in the last step, m/s2.
     """
 
@@ -147,7 +152,8 @@ class _Static:
         k, self.sticking = own.stiffness.diagonal(), csr_matrix(own.stiffness.shape)
         if law is not None:
             self.sticking = problem.of_joints(law.normal_stiffness, law.shear_stiffness)
-        self.stiffest, self.size, self.allowed = float((k / own.mass).max()), 0.0, 0.0
+        self.stiffest = float((k / own.mass).max())
+        self.size, self.digits, self.allowed = 0.0, 0.0, 0.0
         self.u, self.past = np.zeros_like(k), own.past
         self.matrix, self.carries = own.stiffness, k
         if hold is not None:
@@ -172,8 +178,8 @@ class _Static:
             if self.hold is not None:
                 force = force - self.hold @ trial
             borne = drag * own.mass * (trial - self.u)
-            digits = LAST_DIGITS * float((self.carries * np.abs(trial)).max(initial=0.0))
-            self.allowed = TOLERANCE * self.size + min(digits, MOST_LEFT * self.size)
+            self.digits = LAST_DIGITS * float((self.carries * np.abs(trial)).max(initial=0.0))
+            self.allowed = TOLERANCE * self.size + min(self.digits, MOST_LEFT * self.size)
             left = max(self.allowed, ROUGH * float(np.abs(borne).max(initial=0.0)))
             return (force - borne)[free], left
 
