@@ -63,29 +63,14 @@ def closure_stiffness(law, traction):
 
 @formula
 def closure_viscosity(law, traction):
-    """Return C (Pa s/m) at sigma >= 0 (Pa), not below zero where the rock includes more."""
-    stiffness = closure_stiffness(law, traction)
-    joint, rock = viscous_compliance(law, traction)
-    whole = joint + rock
-    return 0.5 * stiffness * stiffness * (whole + abs(whole))
-
-
-@formula
-def closure_viscosity_rise(law, traction):
-    """Return dC / d sigma (s/m) at sigma >= 0 (Pa)."""
+    """Return C (Pa s/m) at sigma >= 0 (Pa), not below zero where the rock includes more, and
+    dC / d sigma (s/m)."""
     (c, s_m), stiffness = closing(law), closure_stiffness(law, traction)
-    joint, rock = viscous_compliance(law, traction)
-    rise = rock - c * stiffness * (joint + rock)
-    return 4.0 * stiffness * stiffness * rise / (s_m + traction) if joint + rock > 0.0 else 0.0
-
-
-@formula
-def viscous_compliance(law, traction):
-    """Return k_ni eta / k_t^2 of the joint and c eta_r of the rock, m s/Pa."""
-    s_m = closing(law)[1]
-    share, rock = s_m / (s_m + traction), law.rock_compliance * law.rock_time_constant
-    own = law.normal_viscosity / (law.normal_stiffness * law.normal_stiffness) - rock
-    return own * share * share * share * share, rock
+    rock, share = law.rock_compliance * law.rock_time_constant, s_m / (s_m + traction)
+    joint = (law.normal_viscosity / law.normal_stiffness**2 - rock) * share**4
+    whole = 0.5 * (joint + rock + abs(joint + rock))
+    rise = 4.0 * (rock - c * stiffness * whole) / (s_m + traction) * (whole > 0.0)
+    return stiffness * stiffness * whole, stiffness * stiffness * rise
 
 
 @formula

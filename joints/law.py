@@ -232,7 +232,7 @@ def stiffest(law: Law, scene: "AnyScene") -> Law:
     if law.maximum_closure is not None:
         normal = closure_stiffness(law, most := stress_in_reach(scene))
         if viscosity is not None:
-            viscosity = np.maximum(viscosity, closure_viscosity(law, most))
+            viscosity = np.maximum(viscosity, closure_viscosity(law, most)[0])
     if law.dilation is not None:
         normal, shear = riding_stiffness(law.dilation, law.friction, normal, shear)
     return law._replace(normal_stiffness=normal, normal_viscosity=viscosity, shear_stiffness=shear)

@@ -5,7 +5,6 @@ from jointwave.joints.closure import (
     closure_traction,
     closure_under,
     closure_viscosity,
-    closure_viscosity_rise,
 )
 from jointwave.joints.formula import formula
 from jointwave.joints.shear import UNLIMITED
@@ -22,7 +21,7 @@ def normal_traction(law, parts, gap, gap_rate, opening):
     """
     t = spring_alone(law, parts, gap)
     if parts.dashpots:
-        t = t - dashpot(law, parts, t) * gap_rate
+        t = t - dashpot(law, parts, t)[0] * gap_rate
     return _cut(law, parts, t, gap, opening)
 
 
@@ -44,12 +43,14 @@ def spring_alone(law, parts, gap):
 
 @formula
 def dashpot(law, parts, spring):
-    """Return the viscosity (Pa s/m) where the spring alone carries `spring` (Pa)."""
+    """Return the viscosity (Pa s/m) where the spring alone carries `spring` (Pa), and its rise with
+    that (s/m)."""
+    viscosity, rise = law.normal_viscosity, 0.0
     if parts.closure:
+        found = closure_viscosity(law, spring if spring > 0.0 else 0.0)
         stiffens = spring > 0.0 and law.maximum_closure < UNLIMITED
-        stiffened = closure_viscosity(law, spring if spring > 0.0 else 0.0)
-        return stiffened if stiffens else law.normal_viscosity
-    return law.normal_viscosity
+        viscosity, rise = found[0] if stiffens else viscosity, found[1] if stiffens else rise
+    return viscosity, rise
 
 
 @formula
@@ -79,10 +80,8 @@ def normal_tangent(law, parts, gap, gap_rate, before, r):
     if parts.closure and gap < 0.0:
         slope = -closure_stiffness(law, t)
     if parts.dashpots:
-        viscosity = dashpot(law, parts, t)
-        if parts.closure and t > 0.0 and law.maximum_closure < UNLIMITED:
-            slope = slope * (1.0 - closure_viscosity_rise(law, t) * gap_rate)
-        t, slope = t - viscosity * gap_rate, slope - viscosity * r
+        viscosity, rise = dashpot(law, parts, t)
+        t, slope = t - viscosity * gap_rate, slope * (1.0 - rise * gap_rate) - viscosity * r
     if parts.softening:
         opening = gap if gap > before else before
         loss = strength_loss(law, gap, before)

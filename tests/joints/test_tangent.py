@@ -118,7 +118,7 @@ class Step:
             left = strength_left(law, opening)
             share = stiffness_left(law, opening) if gap > 0 else 1.0
         spring = spring_alone(law, parts, gap)
-        free = share * (spring - dashpot(law, parts, spring) * gap_rate)
+        free = share * (spring - dashpot(law, parts, spring)[0] * gap_rate)
         signs = [gap > 0, t_n > 0, t_n == 0, free < -left * (1 + EPS)]
         if parts.softening:
             first = law.tensile_strength / law.normal_stiffness
