@@ -62,7 +62,7 @@ def joined(count, shear=True, eta=None, **strengths):
 
 
 def problem(body, own=None, nodes=(), **acts):
-    return Problem(body, readings(body, nodes), own, (NORMAL, SHEAR), **acts)
+    return Problem(body, readings(body, nodes), own, own, **acts)
 
 
 class Force:
