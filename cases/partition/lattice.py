@@ -203,7 +203,6 @@ def _planes(
 
 def _divided(reach: float, rest: float, block: float) -> float:
     """Return the spacing, at most 1.5 `block`, that divides a reach into blocks and `rest`."""
-    if reach <= block and rest > 1.5:
-        return reach  # a layer of one row
     whole = max(round(reach / block - rest), ceil(reach / (1.5 * block) - rest - 1e-9), 0)
-    return reach / (whole + rest) if whole + rest else reach
+    row = reach <= block and rest > 1.5  # a layer of one row
+    return reach / (whole + rest) if whole + rest and not row else reach

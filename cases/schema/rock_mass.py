@@ -123,7 +123,8 @@ class DemOfRock(tables.BlockStepping):
     """Time stepping of rigid blocks, and their size where intact rock is subdivided."""
 
     #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
-    #: absent: blocks are cut by the joint sets only; rock no wider than this is not cut
+    #: absent: blocks are cut by the joint sets only; rock no wider than this is not cut, but layers
+    #: of about this size within wider rock
     block: Positive | None = None
 
 

@@ -77,8 +77,7 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
     for k in np.flatnonzero(on.sum(axis=0) > 1):
         yield (
             f"record.joints[{k}] = {placed(places[k])} lies where joints cross: it records one of "
-            f"the contacts that meet there, of joint_sets[{on[:, k].argmax()}]; move it off the "
-            "crossing"
+            f"the contacts there, of joint_sets[{on[:, k].argmax()}]; move it off the crossing"
         )
     for k in np.flatnonzero(away > NEAR * scene.domain.extent.max()):
         yield (
@@ -90,11 +89,12 @@ def _of_distances(scene: RockMass) -> Iterator[str]:
 def _of_spacings(scene: RockMass) -> Iterator[str]:
     """Warn of spacings, by which joints have the compliance of the rock between them, that are far
     from those of the blocks of a file: volume over area."""
-    cut = blocks_of_scene(scene) if scene.domain.blocks else None
-    for i, one in enumerate(scene.joint_sets if cut else ()):
-        assert cut is not None
+    if not scene.domain.blocks:
+        return
+    cut = blocks_of_scene(scene)
+    for i, one in enumerate(scene.joint_sets):
         area = float(cut.contacts.area[cut.contacts.joint_set == i].sum())
-        apart = float(cut.volume.sum()) / area if area else np.inf
+        apart = float(cut.volume.sum()) / (area or np.inf)
         if one.spacing and area and not 1 / UNLIKE < apart / one.spacing < UNLIKE:
             yield (
                 f"joint_sets[{i}].spacing = {one.spacing:g} m, but its joints in domain.blocks are "
