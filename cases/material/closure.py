@@ -8,7 +8,7 @@ for the third loading cycle, which is closest to joints in situ:
     d_m = -0.1032 - 0.0074 JRC + 1.135 (JCS / a)^-0.251.
 """
 
-from math import sqrt
+from math import nan, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,7 +39,7 @@ def bandis_closure(roughness: float, wall_strength: float, rock_strength: float)
     mm.
     """
     jcs, sigma_c = wall_strength / 1e6, rock_strength / 1e6
-    a = roughness / 5 * (0.2 * sigma_c / jcs - 0.1)
+    a = roughness / 5 * (0.2 * sigma_c / (jcs or nan) - 0.1)
     for name, value, least, most in (
         ("JRC", roughness, 5.0, 15.0),
         ("JCS, MPa,", jcs, 22.0, min(182.0, sigma_c)),

@@ -94,7 +94,12 @@ def test_a_joint_by_bandis():
 
 @pytest.mark.parametrize(
     ("roughness", "wall", "rock", "name"),
-    [(4.9, 100e6, 150e6, "JRC"), (10.0, 160e6, 150e6, "JCS"), (15.0, 22e6, 180e6, "aperture")],
+    [
+        (4.9, 100e6, 150e6, "JRC"),
+        (10.0, 160e6, 150e6, "JCS"),
+        (10.0, 0.0, 150e6, "JCS"),
+        (15.0, 22e6, 180e6, "aperture"),
+    ],
 )
 def test_joints_beyond_what_was_measured_are_refused(roughness, wall, rock, name):
     with pytest.raises(ValueError, match=name):
