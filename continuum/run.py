@@ -1,6 +1,7 @@
 """Simulation as deformable rock, from a scene to its result."""
 
 import json
+import logging
 from collections.abc import Callable
 from time import perf_counter
 from typing import Any
@@ -24,9 +25,13 @@ from jointwave.continuum.stepping.leapfrog import Leapfrog
 from jointwave.continuum.stepping.problem import Problem
 from jointwave.continuum.stepping.static import Rest
 from jointwave.numerics.time_loop import Checkpointer, run_in_chunks
+from jointwave.results.dataset import energy_residual
 
 FREEDOM_STEPS_AT_ONCE = 10_000_000  # in some 0.1 s: often enough for a progress bar
 LEAST_CHUNKS = 20  # of any run
+COARSE = 0.1  # imbalance of implicit steps from which to warn
+FINER = "double numerics.continuum.steps_per_period, or take explicit steps"
+log = logging.getLogger("jointwave")
 
 
 def simulate(
@@ -94,7 +99,11 @@ def simulate(
     work = steps.work_of_a_step * problem.body.mass.size * time.stride
     chunk = min(FREEDOM_STEPS_AT_ONCE // work, time.samples // LEAST_CHUNKS)
     parts = steps.parts, steps.samples, monitor.guard
-    return run_in_chunks(time.samples, chunk, march, result, parts, progress, recorder, keeper)
+    found = run_in_chunks(time.samples, chunk, march, result, parts, progress, recorder, keeper)
+    off = energy_residual(found) if scene.record.energy else 0.0
+    if plan.choice.scheme == "implicit" and off > COARSE:
+        log.warning(f"{scene.where}: energies are {off:.2g} of the work off: {FINER}")
+    return found
 
 
 def about_run(
