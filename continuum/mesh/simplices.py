@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from jointwave.cases.geometry.cell_complex import Complex
+from jointwave.cases.geometry.cell_complex import Complex, GeometryError
 from jointwave.cases.geometry.relations import composed, distinct, merged
 from jointwave.continuum.mesh.conforming import SIMPLICES, Conforming, on_facets
 from jointwave.continuum.mesh.session import gmsh_session
@@ -32,7 +32,8 @@ def simplex_mesh(
 
     alike : pairs of faces in space with equal meshes [n, 2], and shifts [3], m, from the second.
 
-    Raises ImportError, with installation instructions, without gmsh.
+    Raises ImportError, with installation instructions, without gmsh, and GeometryError where edges
+    are too short to be told apart.
     """
     tolerance = ALIKE * float(np.ptp(body.vertices, axis=0).max())
     groups = _equal_blocks(body, tolerance)
@@ -167,8 +168,13 @@ def _placed(
     used, vertex = np.unique(merged(every, 10 * tolerance), return_inverse=True)
     order = np.argsort(np.concatenate(block), kind="stable")
     cells_, block_, on_ = (np.concatenate(one)[order] for one in (cells, block, on))
-    kind = SIMPLICES[body.dim]
-    return _oriented(Conforming(kind, every[used], vertex.reshape(-1)[cells_], block_, on_))
+    cells_ = vertex.reshape(-1)[cells_]
+    flat = (np.diff(np.sort(cells_, axis=1), axis=1) == 0).any(axis=1)
+    if flat.any():
+        at = every[used][cells_[flat.argmax()]].mean(axis=0)
+        cause = f"edges shorter than {10 * tolerance:.2g} m make no elements: joints nearly meet"
+        raise GeometryError(at, cause)
+    return _oriented(Conforming(SIMPLICES[body.dim], every[used], cells_, block_, on_))
 
 
 def own_cells(body: Complex) -> Conforming:

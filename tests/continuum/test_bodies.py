@@ -105,3 +105,6 @@ def test_mistakes_are_told_in_one_line(made):
         made(*thirds, continuum={"order": 3})
     with pytest.raises(SceneError, match=r"numerics\.continuum\.cell.*four edges"):
         made(*thirds, continuum={"cell": "quadrilateral"})
+    near = [{"dip": 0.0, "through": [1.0, y]} for y in (2.0, 2.0 + 1e-7)]
+    with pytest.raises(SceneError, match=r"edges shorter than 6e-07 m .* nearly meet, near \["):
+        made(*near, continuum={"cell": "triangle"})
