@@ -311,7 +311,6 @@ def jointwave(monkeypatch, capsys, tmp_path_factory):
 
     def run(*arguments, code=0):
         monkeypatch.setattr(sys, "argv", ["jointwave", *map(str, arguments)])
-        monkeypatch.setenv("MPLBACKEND", "agg")  # as the command sets it, for this test alone
         capsys.readouterr()
         with pytest.raises(SystemExit) as end:
             main()

@@ -56,11 +56,14 @@ def test_an_example_runs_asserts_and_draws(name, monkeypatch, tmp_path):
     assert len(figures) > drawn  # it ends in a picture
 
 
-def test_an_example_is_run_in_a_kernel_and_its_page_shows_what_came_out(notebooks, tmp_path):
+def test_an_example_is_run_in_a_kernel_and_its_page_shows_what_came_out(
+    notebooks, tmp_path, monkeypatch
+):
     """As in Jupyter: a dataset is shown as a table, figures as pictures, nothing goes wrong."""
     pytest.importorskip("nbclient")
     pytest.importorskip("jupytext")
     pytest.importorskip("ipykernel")
+    monkeypatch.delenv("MPLBACKEND", raising=False)  # which commands set in this process
     found = json.loads(notebooks.run("first-scene", tmp_path).read_text())
     code = [cell for cell in found["cells"] if cell["cell_type"] == "code"]
     assert found["cells"][0]["cell_type"] == "markdown"
