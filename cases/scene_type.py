@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from jointwave.cases.errors import SceneError
 
@@ -13,12 +12,6 @@ if TYPE_CHECKING:
 
 AnyScene: TypeAlias = "Scene | RockMass"  # a string, so that nothing is imported
 Either = TypeVar("Either", bound="AnyScene")
-
-
-def of_kind(scene: AnyScene, package: str) -> Any:
-    """Return the module of a package of `cases` with the rules of a scene's kind; that of rock
-    masses imports shapely."""
-    return import_module(f"jointwave.cases.{package}.{scene.kind.replace(' ', '_')}")
 
 
 def pillar_of(scene: AnyScene, what: str = "this") -> Scene:

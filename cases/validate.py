@@ -8,10 +8,11 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
+from jointwave.cases.checks import pillar
 from jointwave.cases.checks.rules import Wrong, of_quality, of_time
 from jointwave.cases.errors import SceneError, all_of, nearest
 from jointwave.cases.joints_at_places import spelled_out
-from jointwave.cases.scene_type import Either, of_kind
+from jointwave.cases.scene_type import Either
 from jointwave.cases.schema.keys import model_in
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
@@ -91,8 +92,11 @@ def _error(where: str, first: Any, model: Any) -> SceneError:
 def checked(scene: Either) -> Either:
     """Return a scene. Raises SceneError, one line per contradiction, if its tables contradict each
     other: the first that each rule finds. An exception in a rule after that is its consequence."""
+    own: Any = pillar
+    if not scene.is_column:
+        from jointwave.cases.checks import rock_mass as own  # with shapely
     found: list[Wrong] = []
-    for rule in (*of_kind(scene, "checks").rules(scene), of_time(scene), of_quality(scene)):
+    for rule in (*own.rules(scene), of_time(scene), of_quality(scene)):
         try:
             found.extend(islice(rule, 1))
         except PydanticCustomError as error:

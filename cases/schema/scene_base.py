@@ -1,4 +1,4 @@
-"""What all scenes share: title, sources, sides and receivers, and what engines ask of any scene."""
+"""The base of all scenes: title, sources, sides and receivers, and views for engines."""
 
 from typing import Any, ClassVar
 

@@ -3,14 +3,19 @@
 No scene is refused: unusual values may be intended. `--strict` makes each warning an error.
 """
 
+from typing import Any
+
 from jointwave.cases.plausible import implausible
-from jointwave.cases.scene_type import AnyScene, of_kind
+from jointwave.cases.scene_type import AnyScene
+from jointwave.cases.warnings import pillar
 from jointwave.cases.warnings.sources import of_sources
 
 
 def warnings(scene: AnyScene) -> list[str]:
     """Return warnings about likely mistakes in a scene, one line each."""
-    own = of_kind(scene, "warnings")
+    own: Any = pillar
+    if not scene.is_column:
+        from jointwave.cases.warnings import rock_mass as own  # with shapely
     found = [*implausible(scene), *of_sources(scene, **own.met(scene))]
     found += [line for rule in own.RULES for line in rule(scene)]
     falls = scene.gravity is not None and not scene.gravity.static
