@@ -9,7 +9,7 @@ from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.closure import stresses
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
-from jointwave.cases.warnings.sources import of_resolution, onset
+from jointwave.cases.warnings.sources import LEAST_DAMPING, of_resolution, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # reflection by a quiet end on a rigid block at the highest frequency
@@ -42,6 +42,7 @@ def met(scene: Scene) -> dict[str, Any]:
         instead="load.quantity = 'incident-stress' is the stress that enters",
         arrivals=arrivals if load.amplitude else (),
         opening={"joints": scene.joints} if opens else {},
+        steepening=_steepening(scene, added),
         closing=(
             (f"ends.{end}", most, rock.at_rest.impedance, rock.under(most).impedance)
             for (end, kind), rock in ends
@@ -49,6 +50,17 @@ def met(scene: Scene) -> dict[str, Any]:
             if kind in ("quiet", "matched") and scene.source is None
         ),
     )
+
+
+def _steepening(scene: Scene, added: float) -> Iterator[tuple[str, float, float]]:
+    """Yield the load if it closes joints without damping, its way, m, and the slowness that it
+    loses at its peak, s/m."""
+    rock = calibrate(scene).at_start
+    rest, under = rock.at_rest, rock.under(rock.prestress + added)
+    ratio = (rock.time_constant or 0.0) * rest.bar_speed / (2 * rock.spacing)
+    lost = 1 / rest.bar_speed - 1 / under.bar_speed
+    if scene.load.direction[1] and ratio < LEAST_DAMPING and lost > 0:
+        yield "load", min(scene.pillar.length, scene.time.duration * under.bar_speed), lost
 
 
 def _of_poisson(scene: Scene) -> Iterator[str]:

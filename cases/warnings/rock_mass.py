@@ -18,7 +18,7 @@ from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.warnings.places import COINCIDENT, RULES_OF_PLACES
-from jointwave.cases.warnings.sources import of_resolution, onset
+from jointwave.cases.warnings.sources import LEAST_DAMPING, of_resolution, onset
 
 NEAR_SIDE = 1e-6  # shift from a side into the rock, over the domain's size
 EARLY = 1e-6  # rounding of a wave's onset, over the duration
@@ -44,6 +44,7 @@ def met(scene: RockMass) -> dict[str, Any]:
         arrivals=arrivals if acting else (),
         opening={k: x for k, x in opening.items() if x.tension is False or x.tensile_strength},
         closing=_closing(scene),
+        steepening=_steepening(scene),
     )
 
 
@@ -60,6 +61,23 @@ def _closing(scene: RockMass) -> Iterator[tuple[str, float, float, float]]:
             rest, closed = (n @ impedances(scene, *given, more=x) @ n for x in (0.0, added))
             k = int((closed / rest).argmax())
             yield f"boundaries.{side}", added, float(rest[k]), float(closed[k])
+
+
+def _steepening(scene: RockMass) -> Iterator[tuple[str, float, float]]:
+    """Yield plane waves and loads that close joints of sets without damping, their way, m, and the
+    slowness that they lose at their peaks, s/m."""
+    sets = [one for one in scene.joint_sets if one.maximum_closure and one.spacing]
+    damped = scene.damping.rayleigh or all((x.damping_ratio or 0) >= LEAST_DAMPING for x in sets)
+    corners, added = np.array(scene.domain.corners), stresses(scene)[1]
+    places = np.array([corners.mean(axis=0), *scene.record.points])
+    region = region_at(scene.regions, places)
+    density = np.array([one.density for one in rocks_of(scene)])[region]
+    for key, (n, motion) in ({} if damped else plane_waves(scene) or {}).items():
+        if abs(n @ motion) > GRAZING:  # S waves hardly close joints
+            given = np.tile(n, (len(places), 1)), places, region
+            rest, closed = (n @ impedances(scene, *given, more=x) @ n for x in (0.0, added))
+            way, lost = float(np.ptp(corners @ n)), float((density / rest - density / closed).max())
+            yield from [(key, way, lost)] if lost > 0 else []
 
 
 def fastest(scene: RockMass) -> float:

@@ -30,6 +30,7 @@ FORCE |= {"at": [10.0, 5.0], "direction": [1.0, 0.0]}
         ({"numerics__dem__block": 1.0}, "numerics.dem.block = 1 m gives 8.33 rigid blocks"),
         ({"numerics__continuum__size": 2.0}, "numerics.continuum.size = 2 m, of order 2, gives"),
         ({"joint_sets": SETS}, "the joint sets give 4.17 rigid blocks"),
+        ({"joint_sets": [SETS[0] | {"maximum_closure": 1e-5}]}, "waves[0]: joints that close"),
     ],
 )
 def test_a_likely_mistake_in_a_rock_mass_is_a_line(mass, changes, words):
