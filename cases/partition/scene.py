@@ -49,7 +49,8 @@ def blocks_of_domain(
 
     further : sets of cuts, which may lie where joints are. Their thin blocks at the sides, which
     would set the time step, are merged with others where possible. Raises GeometryError, with place
-    and cause, where a joint set cuts nothing, a block is not convex or a sliver is left.
+    and cause, where a joint set cuts nothing or is lost with slivers, a block is not convex or a
+    sliver is left.
     """
     shape, every = shape_of(domain), [*sets, *further]
     tolerance = shape.tolerance
@@ -66,7 +67,14 @@ def blocks_of_domain(
         with suppress(Sliver):
             if further and domain.least_width is None:
                 body = without_slivers(body, least_width(domain, every, LATTICE), *limits)
-        body = without_slivers(body, least_width(domain, every), *limits)
+        width = least_width(domain, every)
+        body = without_slivers(body, width, *limits)
+        for i in sorted({*range(len(sets))} - {*body.joint_set[body.inner].tolist()}):
+            cause = (
+                "is lost: blocks beside it are joined across it, being thinner than "
+                f"domain.least_width = {width:.3g} m or more pointed than domain.least_angle"
+            )
+            raise GeometryError(None, cause, f"joint_sets[{i}]")
     found = blocks_of(body, tolerance)
     side = shape.sides_of(found.boundary.outlines, found.boundary.side)
     return replace(found, boundary=replace(found.boundary, side=side))

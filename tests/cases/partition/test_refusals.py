@@ -17,6 +17,7 @@ SIZE = {"size": [10.0, 6.0]}
 ROWS = {"dip": 0.0, "spacing": 1.0}
 SCATTERED = {"scatter": 0.01, "seed": 1}
 NEAR = {"dip": 0.0, "through": [0.0, 2.005]}
+TWO = [NEAR, {"dip": 0.0, "through": [0.0, 2.05]}]
 AWAY = {"dip": 45.0, "through": [20.0, 3.0]}
 TUNNEL = SIZE | {"openings": [[[4.0, 1.0], [6.0, 1.0], [6.0, 2.5], [4.0, 2.5]]]}
 DENT = {"outline": [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [7.0, 6.0], [4.0, 3.5], [0.0, 3.5]]}
@@ -39,6 +40,7 @@ REFUSED = {
     "a tunnel inside a row": ([ROWS], TUNNEL, UNCUT),
     "an outline that is not convex": ([ROWS], DENT, "corner of the outline ... near [4, 3.5]"),
     "a row that is too thin": ([ROWS, NEAR], SIZE | {"slivers": "refuse"}, THIN),
+    "a joint beside another": (TWO, SIZE, "joint_sets[0]: is lost ... domain.least_width = 0.06 m"),
     "more than the memory": ([wide(1e-5)], SIZE, f"joint_sets[0].spacing = 1e-05: {MANY}"),
     "far more": ([wide(1e-30)], SIZE, "joint_sets[0].spacing = 1e-30: gives about"),
 }
@@ -62,6 +64,7 @@ def test_what_cannot_be_cut_is_refused_in_a_line(rock_with, sets, domain, words,
         ([wide(5.5) | SCATTERED], SIZE, 2),
         ([ROWS], TUNNEL | {"non_convex": "cut"}, 6 + 1 + 2),
         ([ROWS, NEAR], SIZE | {"slivers": "merge"}, 6),
+        (TWO, SIZE | {"least_width": 0.04}, 3),
     ],
 )
 def test_the_same_without_the_cause_is_cut(rock_with, sets, domain, count):
