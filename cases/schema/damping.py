@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from jointwave.cases.schema.pulse import Pulse, shortest_period
+from jointwave.cases.schema.pulse import Pulse
 from jointwave.cases.schema.values import (
     Increasing,
     NonNegative,
@@ -32,7 +32,8 @@ class Attenuating(Table):
     quality_factor: Annotated[float, Field(ge=5, le=1e5)] | None = None
     #: Hz, at which the moduli give the wave speeds; absent: 1 / shortest period
     reference_frequency: Positive | None = None
-    #: Hz, band of constant Q, within 4 %; absent: 0.1 to 10 times reference_frequency
+    #: Hz, band of constant Q, within 4 %; absent: 0.1 to 10 times 1 / period of every load and
+    #: wave, or of reference_frequency without any, and up or down to reference_frequency
     quality_band: Annotated[list[Positive], Two] | None = None
 
     @model_validator(mode="after")
@@ -49,15 +50,19 @@ class Attenuating(Table):
     def quality_frequencies(self, pulses: Iterable[Pulse]) -> tuple[float, float, float]:
         """Return the reference frequency and the ends of the band for these pulses, Hz. Raises a
         contradiction if no pulse has a period, or the band excludes the reference."""
-        period = shortest_period(pulses)
-        at = self.reference_frequency or (1 / period if period else None)
+        own = [1 / one.time_scale for one in pulses if one.time_scale]
+        at = self.reference_frequency or max(own, default=None)
         if at is None:
             allowed = "is required with rock.quality_factor: no load or wave has a period"
             raise contradiction("rock.reference_frequency", None, allowed)
-        low, high = self.quality_band or (at / 10, at * 10)
+        own = own or [at]
+        low, high = self.quality_band or (min(at, *(x / 10 for x in own)), max(at, 10 * max(own)))
         if not low <= at <= high:
             allowed = f"must include the reference frequency, {at:.6g} Hz"
             raise contradiction("rock.quality_band", self.quality_band, allowed)
+        if high > WIDEST * low:
+            allowed = f"must be given: {low:.4g} to {high:.4g} Hz is wider than {WIDEST:,.0f}"
+            raise contradiction("rock.quality_band", None, allowed)
         return at, low, high
 
 

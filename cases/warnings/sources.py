@@ -71,6 +71,15 @@ def of_sources(
                 f"enters; {instead}"
             )
     highest = highest_frequency(scene)
+    if highest is not None and scene.rock.quality_factor is not None:
+        _, low, high = scene.rock.quality_frequencies(scene.pulses)
+        felt = [highest, *(1 / one.time_scale for one in scene.pulses if one.time_scale)]
+        if beyond := [one for one in felt if not low <= one <= high]:
+            yield (
+                f"rock.quality_factor = {scene.rock.quality_factor:g} holds from {low:.4g} to "
+                f"{high:.4g} Hz and rises beyond, but the load reaches {beyond[0]:.4g} Hz: give "
+                "rock.quality_band"
+            )
     if highest is not None and (samples := 1 / (highest * scene.interval)) < LEAST_SAMPLES:
         yield (
             f"record.interval = {scene.interval:g} s takes {samples:.2g} samples in a period at "

@@ -104,6 +104,7 @@ LONG = {"time.duration": 0.12}
 GABOR = {"load.shape": "gabor", "load.period": 0.02}
 COARSE = BAR | {"load.period": 0.003}  # 500 Hz: 2 m, 4 blocks
 ORDER, ELEMENTS = "numerics.continuum.order", "numerics.continuum.elements_per_block"
+LOSSY = BAR["rock"] | {"intact_modulus": 2 * MODULUS, "quality_factor": 20.0}
 #: What a line begins with: changes of the scene, a key, and its value that is wrong and the same
 #: just within what is meant.
 PILLARS = {
@@ -132,6 +133,9 @@ PILLARS = {
     "load: joints that close, hardly damped, steepen its wave into a shock within 6.66 of 50 m": (
         BAR | {"joints.maximum_closure": 1e6 * 0.5 / MODULUS},
         *("joints.damping_ratio", 0.01, 0.02),
+    ),
+    "rock.quality_factor = 20 holds from 50 to 149 Hz and rises beyond, but the load": (
+        *({"load.period": 0.01, "rock": LOSSY}, "rock.quality_band", [50.0, 149.0], [50.0, 151.0]),
     ),
     "damping.local distorts waves": ({"damping": {"local": 0.8}}, "load.amplitude", 1e6, 0.0),
 }

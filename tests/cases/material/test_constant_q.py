@@ -106,6 +106,7 @@ RAYLEIGH = {"damping__rayleigh": {"frequencies": [10.0, 100.0], "ratios": [0.01,
         ({"quality_factor": 4.0}, "quality_factor", "at least 5"),
         ({"quality_factor": 20.0, "quality_band": [90.0, 110.0]}, "quality_band", "2 to 10,000"),
         ({"quality_factor": 20.0, "quality_band": [1.0, 50.0]}, "quality_band", "the refer"),
+        ({"quality_factor": 20.0, "reference_frequency": 1e-3}, "quality_band", "must be given: 0"),
         ({"quality_factor": 20.0, "intact_modulus": None}, "quality_factor", "needs rock.intact"),
         (STEP | {"quality_factor": 20.0}, "reference_frequency", "no load or wave has a period"),
         (RAYLEIGH | {"quality_factor": 20.0}, "quality_factor", "already damps the rock"),
@@ -119,6 +120,13 @@ def test_what_makes_no_rock_is_refused_in_one_line(pillar, changes, key, message
     assert f"rock.{key}" in str(error.value) and "\n" not in str(error.value)
 
 
-def test_a_decade_on_either_side_of_a_reference_frequency_is_the_band(pillar):
-    scene = pillar(**STEP, rock__quality_factor=20.0, rock__reference_frequency=100.0)
-    assert scene.rock.quality_frequencies(scene.pulses) == (100.0, 10.0, 1000.0)
+@pytest.mark.parametrize(
+    ("load", "reference", "band"),
+    [(STEP, 100.0, (10.0, 1000.0)), ({}, None, (10.0, 1000.0)), ({}, 1.0, (1.0, 1000.0))],
+)
+def test_the_band_is_a_decade_on_either_side_of_the_load_and_holds_the_reference(
+    pillar, load, reference, band
+):
+    rock = {"rock__quality_factor": 20.0, "rock__reference_frequency": reference}
+    scene = pillar(**load, **rock)
+    assert scene.rock.quality_frequencies(scene.pulses) == (reference or 100.0, *band)
