@@ -20,6 +20,7 @@ from jointwave.results.dataset import A_RESULT
 from jointwave.results.labels import QUANTITIES, UNITS
 
 ALIKE = 1e-9  # tolerated difference of sample times, over the duration
+MORLET, FREQUENCIES = 6, 24  # omega_0 of the wavelet; number of frequencies of a transform
 JUDGED = 10.0  # smallest misfit that a reference resolves, over its own error
 
 
@@ -209,20 +210,24 @@ def mean_period(waveform: np.ndarray, dt: float) -> float:
 
 
 def envelope_phase_misfit(one: np.ndarray, other: np.ndarray, dt: float) -> tuple[float, float]:
-    """Return the single-valued envelope and phase misfits of Kristekova et al. (2006), by ObsPy.
+    """Return the single-valued envelope and phase misfits of Kristekova et al. (2006).
 
-    Bull. Seism. Soc. Am. 96, 1836-1850; over the band that contains the reference's energy. NaN if
-    there is no such band: the reference is at rest or its period exceeds the record.
+    Bull. Seism. Soc. Am. 96, 1836-1850; of ObsPy's wavelet transforms over the band that contains
+    the reference's energy. NaN if there is no such band: the reference is at rest or its period
+    exceeds the record.
     """
-    from obspy.signal.tf_misfit import em, pm  # slow to import
+    from obspy.signal.tf_misfit import cwt  # slow to import
 
     period = mean_period(other, dt)
     if not one.any() or not period < dt * len(other):
         return np.nan, np.nan
     coarse = max(1, int(period / (40 * dt)))  # 40 samples per period, well above the band
-    pair, band = (one[::coarse], other[::coarse]), (dt * coarse, 0.25 / period, 4 / period)
-    with np.errstate(divide="ignore"):  # phases have no weight where the reference vanishes
-        return float(em(*pair, *band, nf=24)), float(pm(*pair, *band, nf=24))
+    pair, band = (one[::coarse], other[::coarse]), (0.25 / period, 4 / period)
+    W, R = (cwt(x, dt * coarse, MORLET, *band, FREQUENCIES) for x in pair)
+    size, phase = np.abs(R), np.angle(W * R.conj()) / np.pi
+    parts = np.abs(W) - size, size * phase
+    envelope, phased = (float(np.linalg.norm(x) / np.linalg.norm(size)) for x in parts)
+    return envelope, phased
 
 
 def _ratio(a: float, b: float) -> float:

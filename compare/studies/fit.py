@@ -85,7 +85,8 @@ def fit(
     `clock`, a shift added to the times of all files, s. solver : an engine or exact solution; None:
     the exact chain of rigid blocks if it applies and is short, else `dem`. All waveforms weigh the
     same, each relative to its size; amplitudes are not scaled. The 95 % intervals are linearised at
-    the best fit, and valid if the model is correct and residuals are independent.
+    the best fit, and valid if the model is correct and residuals are independent, of one variance
+    in each waveform.
 
     Raises SceneError for keys and curves that cannot be fitted, StoppedError without convergence.
     """
@@ -106,7 +107,7 @@ def fit(
     waveforms = pd.DataFrame({"name": trials.names, "place": trials.places})
     for when, residuals in {"before": before, "after": trials.residuals(best.x)}.items():
         waveforms[when] = [np.linalg.norm(one) for one in residuals]
-    values, correlation = _estimates(trials.keys, best)
+    values, correlation = _estimates(trials.keys, best, trials.lengths)
     fitted = changed(scene, {k: v for k, v in values.value.items() if k != CLOCK})
     notes = _notes(values, correlation, waveforms.after.max())
     return Fit(fitted, name, values, correlation, waveforms, trials.count, notes)
@@ -178,6 +179,11 @@ class _Trials:
             raise SceneError(curves[0].file, "", None, "has no waveform at a receiver of the scene")
         self.names, self.places, self._times, self._values, self._sizes = zip(*found, strict=True)
 
+    @property
+    def lengths(self) -> list[int]:
+        """Number of samples of each waveform."""
+        return [len(at) for at in self._times]
+
     def search(self) -> Any:
         """Return lmfit's result; None if the search does not converge."""
         given = Parameters()
@@ -200,7 +206,7 @@ class _Trials:
         try:
             return np.concatenate(self.residuals(unknowns.valuesdict().values()))
         except (SceneError, UnstableError):
-            return np.full(sum(map(len, self._times)), inf)
+            return np.full(sum(self.lengths), inf)
 
     def residuals(self, x: Iterable[float]) -> list[np.ndarray]:
         """Return the residuals [n] of each waveform for the search variables [p]: solution minus
@@ -233,11 +239,14 @@ def _clock(clock: FreeKey, scene: AnyScene, solver: str, curve: Curves) -> FreeK
     return clock._replace(start=start, low=low, high=high)
 
 
-def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFrame]:
+def _estimates(
+    keys: list[FreeKey], best: Any, lengths: list[int]
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the values of a fit and the correlations of its keys, from lmfit's result.
 
-    The covariance of the unknowns is (J^T J)^-1 times the reduced chi-square. The error of a key is
-    infinite if waveforms do not depend on it or on a combination of keys that contains it.
+    The covariance of the unknowns is A (sum_i s_i^2 J_i^T J_i) A, A = (J^T J)^-1, with the variance
+    s_i^2 of the residuals of each waveform, whose number of samples is in `lengths`. The error of a
+    key is infinite if waveforms do not depend on it or on a combination of keys that contains it.
     """
     names = pd.Index([key.key for key in keys], name="key")
     size = np.linalg.norm(best.jac, axis=0)
@@ -245,8 +254,12 @@ def _estimates(keys: list[FreeKey], best: Any) -> tuple[pd.DataFrame, pd.DataFra
     squares, vectors = np.linalg.eigh(jac.T @ jac)
     covariance = (vectors / np.maximum(squares, 1e-16)) @ vectors.T
     deviation = np.sqrt(np.diag(covariance))
+    waveform = np.repeat(np.arange(len(lengths)), lengths)
+    variance = np.bincount(waveform, best.residual**2) / lengths * best.ndata / max(best.nfree, 1)
+    spread = np.sqrt(variance)[waveform, None] * jac @ covariance
     known = deviation < LOST
-    errors = np.where(known, deviation / np.where(size > 0, size, 1.0) * np.sqrt(best.redchi), inf)
+    errors = np.linalg.norm(spread, axis=0) / np.where(size > 0, size, 1.0)
+    errors = np.where(known, errors, inf)
     half = errors * student.ppf(0.975, max(best.nfree, 1))
     rows = [_row(*one) for one in zip(keys, best.x.tolist(), errors, half, strict=True)]
     correlation = covariance / np.outer(deviation, deviation)

@@ -55,6 +55,8 @@ def test_envelope_sees_amplitude_and_phase_sees_delay():
     late = np.sin(2 * np.pi * (T - 2e-4) / 0.01)
     _, phase = metrics.envelope_phase_misfit(late, np.sin(2 * np.pi * T / 0.01), DT)
     assert phase == pytest.approx(2 * 2e-4 / 0.01, rel=0.05)
+    long = (np.append(x, np.zeros(30 * len(T))) for x in (-pulse(), pulse()))  # underflows
+    assert metrics.envelope_phase_misfit(*long, DT) == pytest.approx((0.0, 1.0))
 
 
 @pytest.mark.parametrize("off, level", [(0.0, 0.0), (pulse(), 1.0)])

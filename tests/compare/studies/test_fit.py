@@ -96,6 +96,24 @@ def test_truth_lies_within_the_interval(scene):
     assert misfit(found) == pytest.approx(expected, rel=0.2)
 
 
+@pytest.mark.parametrize(("noise", "every"), [((1e4, 2e5), 1), ((2e5, 1e4), 1), ((9e4, 9e4), 10)])
+def test_errors_are_those_of_noise_that_differs_between_waveforms(scene, noise, every):
+    """An amplitude a fitted to waveforms a x_i of n_i samples and noise s_i has the variance a^2
+    sum(w_i^2 s_i^2 |x_i|^2) / sum(w_i |x_i|^2)^2, w_i = 1 / |x_i|^2 of the noisy waveform. The
+    noise is known from 10 or more samples, to 24 %."""
+    true, random = solve("lattice", changed(scene, TRUE)), np.random.default_rng(7)
+    curves, parts = [], []
+    for place, size, step in zip((AT_1, AT_3), noise, (1, every), strict=True):
+        exact = place.waveform(true)[::step]
+        heard = exact + size * random.normal(size=len(exact))
+        curves.append(Curves("gauge.csv", "gauge.csv", true.time.values[::step], {place: heard}))
+        parts.append(np.array([size * np.linalg.norm(exact), exact @ exact]) / (heard @ heard))
+    spread, weight = np.transpose(parts)
+    found = jointwave.fit(changed(scene, TRUE), curves, LOAD).values.loc[LOAD]
+    expected = TRUE[LOAD] * np.linalg.norm(spread) / weight.sum()
+    assert found.error == pytest.approx(expected, rel=0.25)
+
+
 @pytest.mark.slow
 def test_intervals_hold_the_truth_in_19_of_20_cases(scene):
     """40 repeats of white noise. Were the intervals right, 33 or fewer would hold the truth in 0.34
