@@ -4,6 +4,7 @@ All are closed forms. Units are those of an end stress, Pa and Pa s; a force or 
 units instead.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, pi, sqrt
@@ -21,15 +22,10 @@ class Forms(NamedTuple):
     twice: Callable[[Any], Any]
 
 
-class LoadHistory:
-    """A load over time: by default smooth `forms` from t = 0 to `stop`, and zero elsewhere."""
+class LoadHistory(ABC):
+    """A load over time, zero before t = 0."""
 
-    stop = inf  #: s
-
-    @property
-    def forms(self) -> Forms:
-        """The smooth function of the load, and its integrals."""
-        raise NotImplementedError
+    stop = inf  #: s, zero after it
 
     @property
     def end(self) -> float:
@@ -40,6 +36,10 @@ class LoadHistory:
     def breaks(self) -> list[float]:
         """Times at which the load is not smooth, s."""
         return [0.0, self.stop] if self.stop < inf else [0.0]
+
+    @abstractmethod
+    def integral(self, n: int, t: np.ndarray) -> np.ndarray:
+        """Return the n-th integral of the stress from minus infinity to t; n = -1: its rate."""
 
     def value(self, t: np.ndarray) -> np.ndarray:
         """Return the stress (Pa) at times t (s)."""
@@ -57,8 +57,16 @@ class LoadHistory:
         """Return the integral of the impulse from minus infinity to t (Pa s2)."""
         return self.integral(2, t)
 
-    def integral(self, n: int, t: np.ndarray) -> np.ndarray:
-        """Return the n-th integral of the stress from minus infinity to t; n = -1: its rate."""
+
+class Smooth(LoadHistory):
+    """A load of smooth `forms` from t = 0 to `stop`."""
+
+    @property
+    @abstractmethod
+    def forms(self) -> Forms:
+        """The smooth function of the load, and its integrals."""
+
+    def integral(self, n, t):
         rate, value, once, twice = self.forms
         if n < 1:
             return np.where((t > 0) & (t < self.stop), (value if n == 0 else rate)(t), 0.0)
@@ -72,7 +80,7 @@ class LoadHistory:
 
 
 @dataclass(frozen=True)
-class Sine(LoadHistory):
+class Sine(Smooth):
     """Cycles of p0 sin(2 pi t / T), zero elsewhere (Guo & Li 2002, fig. 2); 0.5: a half sine."""
 
     amplitude: float
@@ -97,7 +105,7 @@ class Sine(LoadHistory):
 
 
 @dataclass(frozen=True)
-class Ricker(LoadHistory):
+class Ricker(Smooth):
     """p0 (1 - 2 a) exp(-a), a = (pi (t - 1.5 T) / T)^2: a Ricker wavelet of peak frequency 1 / T.
     Its centre is 1.5 T; before t = 0 and after `end` it is below 1e-8 of the peak."""
 
@@ -129,7 +137,7 @@ class Ricker(LoadHistory):
 
 
 @dataclass(frozen=True)
-class Gabor(LoadHistory):
+class Gabor(Smooth):
     """p0 exp(-s^2 / 2 b^2) cos(2 pi s / T), s = t - 6.4 b: a cosine in a Gaussian of standard
     deviation b = cycles T / 4, which contains the cycles within two b on each side (Gabor 1946).
 
@@ -184,7 +192,7 @@ class Gabor(LoadHistory):
 
 
 @dataclass(frozen=True)
-class Step(LoadHistory):
+class Step(Smooth):
     """A stress p0 applied at t = 0 and held; half of it at t = 0."""
 
     amplitude: float

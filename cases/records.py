@@ -15,7 +15,7 @@ from codecs import getincrementaldecoder
 from collections.abc import Callable
 from math import isnan
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -144,6 +144,9 @@ def _of_text(content: bytes, time_name: str) -> tuple[Columns, Where]:
         raise ValueError(f"must hold rows of two or more numbers, unlike {last[:60]!r}")
     names, units = _header(head[:first], separator, cells, time_name)
     data = re.sub(rb"#[^\n]*", b"", content.split(b"\n", first)[-1])
+    # As Python reads numbers; pandas 3.1 always does, and is to lose the keyword.
+    older = tuple(map(int, pd.__version__.split(".")[:2])) < (3, 1)
+    exact: dict[str, Any] = {"float_precision": "round_trip"} if older else {}
     decimal = "," if separator != "," and data.count(b",") > data.count(b".") else "."
     try:
         frame = pd.read_csv(
@@ -153,7 +156,7 @@ def _of_text(content: bytes, time_name: str) -> tuple[Columns, Where]:
             header=None,
             index_col=False,
             dtype=float,
-            float_precision="round_trip",  # as Python reads numbers
+            **exact,
             keep_default_na=False,
             na_values=[""],
             skipinitialspace=True,

@@ -124,16 +124,14 @@ def load_variants(
 
 def _checked(scene: Any) -> Any:
     """Return a scene; raises SceneError if its [expect] names an unknown solver or quantity."""
-    solvers = registry.names()
+    pair = registry.names(), "be 'a ~ b', two of"
+    quantity = ("", *QUANTITIES, *PEAKS), "end in ': ' and one of"
     for key in scene.expect:
         one, other, of = bound_of(key)
-        if not {one, other} <= set(solvers):
-            allowed = f"must be 'a ~ b', two of {', '.join(solvers)}"
-        elif of not in ("", *QUANTITIES, *PEAKS):
-            allowed = f"must end in ': ' and one of {', '.join((*QUANTITIES, *PEAKS))}"
-        else:
-            continue
-        raise SceneError(scene.where, f"expect.{key}", None, allowed)
+        for name, (known, must) in ((one, pair), (other, pair), (of, quantity)):
+            if name not in known:
+                allowed = f"must {must} {', '.join(filter(None, known))}{nearest(name, known)}"
+                raise SceneError(scene.where, f"expect.{key}", None, allowed)
     return scene
 
 

@@ -126,7 +126,7 @@ def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) ->
     if numerics.cell == "quadrilateral" and boxes is None:
         allowed = "not every block has four edges with one neighbour each"
         raise SceneError(scene.where, "numerics.continuum.cell", numerics.cell, allowed)
-    size = element_size(scene, boxes is None)
+    size = element_size(scene, boxes is None, float(np.ptp(body.vertices, axis=0).min()))
     if np.isfinite(size):
         refuse_large_mesh(scene, blocks, size, body.dim)
     if boxes is None:

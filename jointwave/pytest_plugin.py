@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from jointwave.compare.cli.scene_tests import SceneFile
 
 LARGEST_FILE = 10_000_000  # bytes, the limit of scene files
-#: Patterns that a scene with tests contains, as table or key.
-KEYS = "pillar|domain", r"(variants\.)?expect"
+SCENES = "pillar", "domain"  # each scene has one of these tables
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile | None":
@@ -30,13 +29,25 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile
 
 
 def _is_scene(path: Path) -> bool:
-    """Return whether a file looks like a scene with [expect], its own or a variant's. A file with a
-    syntax error counts, as it must not drop out of the tests."""
+    """Return whether a file is a scene with [expect], its own or a variant's. A file with a syntax
+    error that looks like one counts, as it must not drop out of the tests."""
     try:
         if path.stat().st_size > LARGEST_FILE:
             return False
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError):
         return False
-    begins = r"(^\s*\[?|[{,])\s*"
-    return all(re.search(rf"{begins}({key})\b", text, re.MULTILINE) for key in KEYS)
+    if "expect" not in text or not any(key in text for key in SCENES):
+        return False
+    from jointwave.cases.files import parse_toml
+
+    try:
+        tables = parse_toml(text)
+    except (ValueError, RecursionError):
+        keys = "|".join(SCENES), r"(variants\.)?expect"
+        begins = r"(^\s*\[?|[{,])\s*"
+        return all(re.search(rf"{begins}({key})\b", text, re.MULTILINE) for key in keys)
+    variants = tables.get("variants")
+    each = [tables, *(variants if isinstance(variants, list) else [variants])]
+    expects = any(isinstance(one, dict) and "expect" in one for one in each)
+    return expects and any(key in tables for key in SCENES)

@@ -143,10 +143,11 @@ def solved(run, monkeypatch):
     return instead
 
 
-def test_bounds_of_inline_variants_are_held_too(run):
-    text = scene().split("[expect]")[0]
-    variants = 'variants = [\n{ name = "a", expect = { "dem ~ lattice" = 1e-9 } }]\n'
-    run(scene=variants + text).assert_outcomes(failed=1)
+def test_bounds_of_inline_variants_and_of_quoted_tables_are_held_too(run):
+    text, bounds = scene(bound=1e-9).split("[expect]")
+    variants = 'variants = [\n{ name = "a", "expect" = { "dem ~ lattice" = 1e-9 } }]\n'
+    quoted = text.replace("[pillar]", '["pillar"]') + f"[ 'expect' ]{bounds}"
+    run(inline=variants + text, quoted=quoted).assert_outcomes(failed=2)
 
 
 def test_each_variant_is_held_to_the_pairs_that_apply_and_each_engine_runs_once(run, solved):
@@ -199,6 +200,7 @@ def test_other_toml_files_are_left_alone(run):
         unexpecting=scene().split("[expect]")[0],
         expecting="[expect]\nanswer = 42\n",
         listed="pillar = [1, 2]\nvariants = [1]\n",
+        words='names = [\n"domain",\n"expect"]\n',
     )
     result.assert_outcomes()
 

@@ -18,10 +18,11 @@ from jointwave.cases.gmsh_file import read_tagged
 from jointwave.cases.records import read_columns, read_history
 from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.size import LIMIT, memory
-from jointwave.compare.engines import solve
+from jointwave.compare.engines import solve, solver
 from jointwave.compare.misfit.columns import read_netcdf
 from jointwave.compare.report import peers
 from jointwave.compare.runs.output import read_rows
+from jointwave.compare.scenes import load
 from jointwave.results import dataset
 from jointwave.results.labels import QUANTITIES, RECEIVERS
 from jointwave.results.netcdf import load_netcdf
@@ -92,6 +93,31 @@ def test_a_run_within_the_memory_is_made(pillar, limit, solver, changes):
     limit(5e-3)
     short = dict(time__duration=2e-3, record__interval=1e-4)
     assert solve(solver, pillar(**short, **changes)).sizes["time"] == 21
+
+
+def test_elements_of_rock_that_nothing_excites_fit_and_a_refusal_names_some_that_do(
+    one_joint, limit
+):
+    """However short the run is, they are those of a wave as long as the rock's least extent."""
+    joints = [{"name": "bed", "dip": 0.0, "spacing": 10.0}]
+    joints[0] |= {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    weight = {"acceleration": 9.81, "static": False}
+    tables = one_joint(gravity=weight, boundaries={"bottom": "fixed"}, joint_sets=joints)
+    del tables["waves"]
+
+    def run(duration, **continuum):
+        numerics = {"continuum": continuum}
+        scene = load(tables | {"time": {"duration": duration}, "numerics": numerics})
+        return solver("continuum-jointed").prepare(scene)
+
+    assert run(1e-3).freedoms == run(1e-5).freedoms > run(1.0).freedoms
+    limit(1e-3)
+    with pytest.raises(SceneError, match=r"numerics\.continuum\.size: .*; elements of") as error:
+        run(1e-3)
+    size = float(re.search(r"elements of (\S+) m fit", str(error.value))[1])
+    assert run(1e-3, size=size).freedoms > 0
+    with pytest.raises(SceneError, match=r"numerics\.continuum\.size"):
+        run(1e-3, size=size / 1.3)
 
 
 CHILD = """

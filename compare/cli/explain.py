@@ -36,11 +36,10 @@ UNITS = {
     "Pa/m": "joint_stiffness",
     "Pa s/m": "impedance",
     "J/m²": "energy",
-    "bytes": "bytes",
 }
 LABELS = {key: f"{key} ({unit})" for unit, keys in UNITS.items() for key in keys.split()} | {
-    "bytes": "memory of the blocks (bytes)",
-    "bytes_at_most": "memory while they are cut, at most (bytes)",
+    "bytes": "memory of the blocks",
+    "bytes_at_most": "memory while they are cut, at most",
     "boundary": "contacts with the boundary",
     "largest": "largest block",
     "poisson": "Poisson's ratio",
@@ -134,6 +133,7 @@ def show_explanation(found: Facts, every: bool) -> None:
     """Print the facts of a scene; every : also absent effects, and solutions that do not apply."""
     say(f"{found['title']} {found['variant']}".rstrip(), "bold")
     facts = {key: value for key, value in found.items() if key not in APART}
+    facts |= {key: spoken(facts[key]) for key in ("bytes_at_most", "bytes") if key in facts}
     if "speeds" in facts:
         facts["speeds"] = {label_of(name): one for name, one in facts["speeds"].items()}
     show_facts(facts, LABELS)

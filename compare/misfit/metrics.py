@@ -85,7 +85,7 @@ class Worst(NamedTuple):
     def where(self) -> str:
         """Quantity and receiver as text."""
         if self.place is None:
-            return "nowhere"
+            return "nothing moves"
         return self.place.words + ", of all motion there" * self.of_all
 
 

@@ -155,7 +155,7 @@ def _page(
         "command": command,
         "picture": shown.lead,
         "lead": lead(every),
-        "summary": pd.concat(worst, axis=1),
+        "summary": _grouped(pd.concat(worst, axis=1)),
         "claims": [(one.request, claim) for one in solved for claim in one.claims],
         "about": shown.about,
         "every_scene": every,
@@ -209,11 +209,16 @@ def _unbroken(text: str) -> str:
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
+def _grouped(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with equal outermost row labels together."""
+    if table.index.nlevels == 1:
+        return table
+    return pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
+
+
 def _rows(table: pd.DataFrame) -> Markup:
     """Return a table in HTML, with equal row labels grouped, and names of solutions in words."""
-    if table.index.nlevels > 1:
-        table = pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
-    cells = table.apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))
+    cells = _grouped(table).apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))
     cells = cells.rename(index=in_words, columns=in_words)
     named = table.index.names != [None]
     return Markup(cells.to_html(border=0, index=named, justify="unset"))

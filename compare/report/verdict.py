@@ -183,7 +183,7 @@ def _misfit(comparison: Comparison, one: str, other: str | None) -> Worst:
     """Return a misfit; nan if `other` was not solved or does not move."""
     results = comparison.results
     found = worst(results[one], results[other]) if other in results else Worst(nan)
-    return found if isfinite(found.judged) else Worst(nan)
+    return found if found.place is not None and isfinite(found.judged) else Worst(nan)
 
 
 def _broken(engine: str, comparison: Comparison) -> Iterable[str]:

@@ -4,16 +4,16 @@ import gc
 import hashlib
 import json
 import os
-import signal
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from functools import partial
+from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
+from signal import SIG_BLOCK, SIG_SETMASK, SIGINT, pthread_sigmask
 from tempfile import gettempdir
-from threading import current_thread, main_thread
 from typing import Any, TypeVar
 
 from joblib import Parallel, delayed
@@ -74,22 +74,15 @@ def _parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )
     about = work, Path.cwd(), count > 1
-    with _ignoring_interrupts():
-        found = run(delayed(_named)(*one, *about) for one in points.items())
-    yield from found
-
-
-@contextmanager
-def _ignoring_interrupts() -> Iterator[None]:
-    """Let workers that start meanwhile ignore Ctrl-C: this process receives it and ends them."""
-    if current_thread() is not main_thread():  # only the main thread can set signal handlers
-        yield
-        return
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if count > 1:
+        ensure_running()  # of Python: when it starts, it unblocks signals (up to Python 3.12)
+    # Workers inherit the blocked Ctrl-C, and ignore it: this process gets it below, and ends them.
+    before = pthread_sigmask(SIG_BLOCK, [SIGINT])
     try:
-        yield
+        found = run(delayed(_named)(*one, *about) for one in points.items())
     finally:
-        signal.signal(signal.SIGINT, handler)
+        pthread_sigmask(SIG_SETMASK, before)
+    yield from found
 
 
 def _named(

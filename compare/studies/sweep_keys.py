@@ -98,9 +98,15 @@ def _scenes(
 
 def _folder(setting: dict[str, Any], number: int) -> str:
     """Return the name of a point's folder: its values, or its number if they make no valid name."""
-    name = ",".join(f"{k}={v}" for k, v in setting.items())
+    name = ",".join(f"{k}={_plain(v)}" for k, v in setting.items())
     plain = name.isprintable() and not set(name) & set("/\\[{") and len(name.encode()) <= LONGEST
     return name if plain else f"point-{number:05d}"
+
+
+def _plain(value: Any) -> Any:
+    """Return a value with whole numbers as such: 0 and 0.0 are one point."""
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
+    return int(value) if whole else value
 
 
 def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
@@ -136,7 +142,7 @@ def _listed(text: str, spec: str) -> list[Any]:
     values = parse_override(f"value=[{spec}]")[1]
     if isinstance(values, str):  # words without quotes
         values = [parse_override(f"value={part.strip()}")[1] for part in spec.split(",")]
-    if len({json.dumps(value, default=str) for value in values}) < len(values):
+    if len({json.dumps(_plain(value), default=str) for value in values}) < len(values):
         raise SceneError("--sweep", text, None, "must not repeat a value")
     return values
 

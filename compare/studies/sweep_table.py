@@ -12,6 +12,7 @@ from jointwave.compare.engines import in_words
 from jointwave.compare.figures import bands
 from jointwave.compare.figures.export import save
 from jointwave.compare.figures.style import UNITS
+from jointwave.compare.figures.tables import SHOWN
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
 from jointwave.compare.runs.output import write_csv, write_dataset
@@ -29,8 +30,11 @@ NUMBERS = {
     "pair": Distance._fields,
 }
 
-#: Headings in a table of columns whose name is not enough.
-HEADINGS = {"time_of_peak": "time of peak (s)", "seconds": "stepping (s)", "delay": "delay (s)"}
+#: Headings in a table of columns whose name is not enough, and factors.
+HEADINGS: dict[str, tuple[str, float]] = {
+    "time_of_peak": ("time of peak (s)", 1),
+    "seconds": ("stepping (s)", 1),
+} | dict(zip(Distance._fields, SHOWN.items(), strict=True))
 
 
 def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame) -> Summary:
@@ -51,9 +55,12 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
         facts["statistics"] = shown.to_dict("records")
         if out is not None:
             files += write_ensemble(out, shown, done, keys)
-        shown = shown[shown.number == numbers[0]]
-        legend = f"{numbers[0]}: mean and percentiles over the members; all are in ensemble.csv."
-        numbers = [*STATISTICS, "members"]
+        first, numbers = numbers[0], [*STATISTICS, "members"]
+        name, factor = HEADINGS.get(first, (first, 1))
+        shown = shown[shown.number == first].assign(
+            **{each: factor * shown[each] for each in STATISTICS}
+        )
+        legend = f"{name}: mean and percentiles over the members; all are in ensemble.csv."
     elif by == "pair":  # keep the worst waveform of each pair
         loud = done[done.faint == "false"].sort_values("misfit")
         shown = loud.drop_duplicates([*keys, "variant", by], keep="last").sort_index()
@@ -78,7 +85,10 @@ def _display(rows: pd.DataFrame, by: str, keys: list[str], numbers: list[str]) -
     if keys:
         labels[", ".join(keys)] = [", ".join(str(row[key]) for key in keys) for row in records]
     labels["of"] = [_receiver(row) for row in records]
-    table = rows[numbers].rename(columns=HEADINGS)
+    heads = {name: HEADINGS[name] for name in numbers if name in HEADINGS}
+    scaled = {name: factor * rows[name] for name, (_, factor) in heads.items() if factor != 1}
+    names = {name: head for name, (head, _) in heads.items()}
+    table = rows[numbers].assign(**scaled).rename(columns=names)
     return table.set_index(pd.MultiIndex.from_arrays([*labels.values()], names=labels))
 
 

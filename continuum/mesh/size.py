@@ -5,7 +5,7 @@ from math import ceil, sqrt
 
 import numpy as np
 
-from jointwave.cases.errors import placed
+from jointwave.cases.errors import SceneError, placed
 from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.calibrate import calibrate
@@ -15,6 +15,7 @@ from jointwave.cases.sampling import resolved_period
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.schema.scene import Scene
+from jointwave.cases.size import excess
 from jointwave.cases.warnings.sources import of_resolution
 
 #: Elements per wavelength of the slowest wave at the shortest period, by order.
@@ -29,15 +30,20 @@ FREEDOM, ENTRY = 500, 40
 FLUID = 1e-9  # modulus, over the largest one, below which rock has no shear waves
 
 
-def element_size(scene: RockMass, simplices: bool) -> float:
+def element_size(scene: RockMass, simplices: bool, least: float) -> float:
     """Return the approximate size of elements, m: `numerics.continuum.size`, or one that resolves
-    the slowest waves of the shortest pulse in jointed rock; infinite for the blocks of a mesh."""
+    the slowest waves of the shortest pulse in jointed rock; infinite for the blocks of a mesh.
+
+    least : extent of the rock along its shortest axis, m. No shorter wave matters without pulses.
+    """
     numerics = scene.numerics.continuum
     if numerics.size is not None or scene.domain.mesh is not None:
         return numerics.size or np.inf
     sharp = any(one.shape not in ("ricker", "gabor") for one in scene.pulses)
     many = IN_PERIOD[numerics.order] * (OF_KINKS if sharp else 1.0)
-    return slowest(scene) * resolved_period(scene) / many / (OF_SIMPLICES if simplices else 1.0)
+    wave = slowest(scene) * resolved_period(scene)
+    wave = wave if scene.pulses else max(wave, least)
+    return wave / many / (OF_SIMPLICES if simplices else 1.0)
 
 
 def elements_along(scene: Scene, model: str) -> np.ndarray:
@@ -62,13 +68,22 @@ def refuse_large_mesh(
     """Raise SceneError if elements of this size (m) do not fit in memory; key : sets the size."""
     order, dim = scene.numerics.continuum.order, blocks.body.dim
     surface = float(2 * blocks.contacts.area.sum() + blocks.boundary.area.sum()) / 2
-    cells = float(blocks.volume.sum()) / size**dim + surface / size ** (dim - 1) + blocks.count
-    nodes = cells * (order + 0.5) ** dim
-    parts = {
-        key: body_bytes(nodes, components, order, dim),
-        "record.fields": snapshot_bytes(scene, nodes),
-    }
-    refuse_beyond_memory(scene, parts)
+
+    def parts(size: float) -> dict[str, float]:
+        cells = float(blocks.volume.sum()) / size**dim + surface / size ** (dim - 1) + blocks.count
+        nodes = cells * (order + 0.5) ** dim
+        body = body_bytes(nodes, components, order, dim)
+        return {key: body, "record.fields": snapshot_bytes(scene, nodes)}
+
+    try:
+        refuse_beyond_memory(scene, parts(size))
+    except SceneError as error:
+        larger = (1.1**k * size for k in range(100))
+        fits = next((one for one in larger if not excess(sum(parts(one).values()))), None)
+        if fits is None or not key.endswith("size"):
+            raise
+        allowed = f"{error.allowed}; elements of {1.05 * fits:.2g} m fit"  # rounded upwards
+        raise SceneError(error.where, error.key, error.value, allowed) from None
 
 
 def body_bytes(nodes: float, components: int, order: int, dim: int) -> float:

@@ -31,8 +31,10 @@ def signature(scene: AnyScene, name: str, processes: int) -> Signature:
     name : of the solver.
     """
     found = {package: version(package) for package in ("numpy", "numba")}
+    record = scene.record.model_dump_json()
     return {
         "scene": _scene(scene, name),
+        "[record] table": hashlib.sha256(record.encode()).hexdigest()[:16],
         "engine": name,
         PROCESSES: str(processes),
         "program": program(),
@@ -56,8 +58,8 @@ def program() -> str:
 
 
 def _scene(scene: AnyScene, name: str) -> str:
-    """Return a hash of the keys that affect a solver's result, with the scene's warnings; the
-    numerics of another engine and [expect] do not affect it."""
-    left_out: dict[str, Any] = {"expect": True, "numerics": INDIFFERENT[solver(name).engine]}
-    text = scene.model_dump_json(exclude=left_out)
+    """Return a hash of the keys but [record] that affect a solver's result, with the scene's
+    warnings; the numerics of another engine and [expect] do not affect it."""
+    left_out: dict[str, Any] = {"numerics": INDIFFERENT[solver(name).engine]}
+    text = scene.model_dump_json(exclude=left_out | {"expect": True, "record": True})
     return scene_hash(scene, text + json.dumps(warnings(scene)))

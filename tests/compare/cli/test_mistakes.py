@@ -82,6 +82,8 @@ def test_a_message_about_a_long_argument_is_short(jointwave):
         (("explain", SCENE, "--set", "pilar.length=1"), "pillar"),
         (("explain", SCENE, "--variant", "zeta 0.2"), "zeta 0.02"),
         (("study", "dimension"), "dimensions"),
+        (("explain", SCENE, "--set", "expect.dem ~ latice=1"), "lattice"),
+        (("explain", SCENE, "--set", "expect.dem ~ lattice: PVP=1"), "PPV"),
     ],
 )
 def test_a_name_that_is_unknown_is_told_the_nearest(jointwave, typed, meant):

@@ -104,7 +104,7 @@ def test_peaks_are_those_of_all_components_together():
         ("velocity", 0.2, "velocity x at [1, 0] m"),
         ("PPV", 0.1, "PPV at [0, 0] m"),
         ("peak stress", 0.25, "peak stress at [0, 0] m"),
-        ("traction", nan, "nowhere"),
+        ("traction", nan, "nothing moves"),
     ],
 )
 def test_a_bound_is_of_the_worst_waveform_of_a_quantity_or_a_peak(of, distance, where):

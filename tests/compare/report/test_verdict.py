@@ -69,6 +69,7 @@ def answer(capsys):
         ({"continuum_jointed": 0.0}, "continuum-jointed", nan, nan, "", NOT_CHECKED.word),
         # Of a reference that stands still nothing is known.
         ({"dem": 0.1, "spatial_lattice": -1.0}, "dem", nan, nan, None, NOT_CHECKED.word),
+        ({"dem": -1.0, "lattice": -1.0}, "dem", nan, nan, None, NOT_CHECKED.word),
     ],
 )
 def test_an_engine_is_judged_by_the_finest_physics(

@@ -66,7 +66,7 @@ def test_second_command_solves_nothing(lines):
     [
         ("load.amplitude=2e6", "is from another scene"),
         ("numerics.dem.step_fraction=0.04", "is from another scene"),
-        ("record.energy=false", "is from another scene"),
+        ("record.energy=false", "is from another [record] table"),
         ("numerics.continuum.order=1", ""),
         ("numerics.dem.threads=2", ""),
     ],

@@ -247,7 +247,7 @@ def test_values_are_what_is_written(spec, expected):
         ("a=1:1:3", "ends that differ"),
         *((f"a={spec}", "finite ends") for spec in ("nan:1:3", "1:inf:3")),
         *((f"a={spec}", "one sign") for spec in ("log:0:1:3", "log:-1:1:3")),
-        *((f"a={spec}", "repeat a value") for spec in ("0.1,0.1", "1,1.0,true,1")),
+        *((f"a={spec}", "repeat a value") for spec in ("0.1,0.1", "1,true,1.0")),
         ("a=1,2 a=3,4", "a is given already"),
         ("set=1,2", "set is given already"),
         ("a=1:2:100 b=1:2:200", "20,000 points; at most 10,000"),

@@ -85,7 +85,6 @@ def test_what_has_no_checkpoints_ends_in_a_line(command, number, tmp_path, start
     out = tmp_path / "out"
     process = start(*command, "--out", out)
     assert until(process, lambda: any(map(is_locked, (out, *out.rglob("*")))))
-    time.sleep(0.0 if "exact" in command else 0.3)  # workers start
     if number == signal.SIGINT:
         os.killpg(process.pid, number)
     else:
