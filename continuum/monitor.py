@@ -67,7 +67,7 @@ class Monitor:
             pushed = problem.forces.impulse(mass, time.steps, apart)
         if problem.held.moved is not None:
             moved = problem.held.moved(np.arange(time.steps + 1)) / time.dt
-            speed = np.diff(moved, prepend=0.0, append=0.0)
+            speed = np.diff(moved, axis=0, prepend=0.0, append=0.0)
             shaken = np.abs(speed).sum() * np.sqrt(mass.sum())
         if problem.steady is not None:
             weight = np.sqrt((problem.steady**2 / mass).sum())

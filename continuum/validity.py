@@ -37,7 +37,6 @@ def _of_rock_mass(scene: RockMass, model: str) -> Reasons:
     damped = scene.rock.quality_factor is not None
     reasons = [
         (scene.damping.local is not None, "the continuum has no local damping"),
-        (len(scene.bases) > 1, "only one base can move"),
         (damped and bool(scene.waves), "[[waves]] do not support a quality_factor"),
     ]
     if model == "jointed":

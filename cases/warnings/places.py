@@ -96,9 +96,10 @@ def _of_spacings(scene: RockMass) -> Iterator[str]:
         area = float(cut.contacts.area[cut.contacts.joint_set == i].sum())
         apart = float(cut.volume.sum()) / (area or np.inf)
         if one.spacing and area and not 1 / UNLIKE < apart / one.spacing < UNLIKE:
+            longer = max(apart, one.spacing)
             yield (
                 f"joint_sets[{i}].spacing = {one.spacing:g} m, but its joints in domain.blocks are "
-                f"about {apart:.3g} m apart; {apart:.3g} mm is {apart / 1e3:.3g} m"
+                f"about {apart:.3g} m apart; {longer:.3g} mm is {longer / 1e3:.3g} m"
             )
 
 

@@ -13,6 +13,7 @@ from jointwave.cases.material.closure import stresses
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rock import elastic_rock
 from jointwave.cases.partition.joints import region_at, rocks_of
+from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
 from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
 from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
@@ -108,8 +109,10 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
     size, given = scene.numerics.continuum.size, scene.numerics.dem.block
     block = given or _block_size(scene)
     if block is not None:
-        key = "domain.blocks of" if scene.domain.blocks else "numerics.dem.block ="
-        gives = f"numerics.dem.block = {given:g} m gives" if given else "the joint sets give"
+        file = scene.domain.blocks is not None
+        key = "domain.blocks of" if file else "numerics.dem.block ="
+        cut = "the largest of domain.blocks gives" if file else "the joint sets give"
+        gives = f"numerics.dem.block = {given:g} m gives" if given else cut
         remedy = f": {key} {wave / LEAST_BLOCKS:.2g} m"
         yield from of_resolution(gives, wave / block, f"rigid blocks {where}", remedy)
     if size is not None:
@@ -119,13 +122,16 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
 
 
 def _block_size(scene: RockMass) -> float | None:
-    """Return the length of the blocks of the joint sets, m: the domain's size unless two sets
-    (three in space) cut it, or one that all waves cross at right angles. None if no joints have a
-    spacing: rigid blocks then need a given size."""
+    """Return the length of the largest block of a file, m, the root of its area or volume, or of
+    the blocks of the joint sets: the domain's size unless two sets (three in space) cut it, or one
+    that all waves cross at right angles. None if no joints have a spacing: rigid blocks then need a
+    given size."""
     spacings = sorted(one.spacing for one in scene.joint_sets if one.spacing)
     if not spacings:
         return None
     size, dim = float(scene.domain.extent.max()), scene.domain.dimension
+    if scene.domain.blocks is not None:
+        return float(blocks_of_scene(scene).volume.max() ** (1 / dim))
     waves = plane_waves(scene)
     if len(scene.joint_sets) == 1 and waves is not None:
         along = scene.joint_sets[0].frame[1:]
@@ -168,6 +174,22 @@ def _of_rollers(scene: RockMass) -> Iterator[str]:
                 )
 
 
+def _of_halves(scene: RockMass) -> Iterator[str]:
+    """Warn of rigid blocks that periodic sides cut in two; `dem.block` cuts rock anyway."""
+    periodic = scene.boundaries.sides("periodic") and not scene.domain.mesh
+    if not periodic or not scene.joint_sets or scene.numerics.dem.block:
+        return
+    for one in across_periodic(scene, blocks_of_scene(scene)):
+        apart = one.contacts.blocks[:, 0] != one.contacts.blocks[:, 1]
+        if many := np.count_nonzero(apart & ~one.contacts.of_joints(len(scene.joint_sets))):
+            yield (
+                f"boundaries.{one.sides[0]} = 'periodic' cuts {many} rigid blocks in two, whose "
+                "halves move apart as the rock between their centres lets them: velocities were "
+                "off by 2.5 % and a traction by 17 % where every second brick was cut, in twice "
+                "the width by 0.6 and 1.2 %"
+            )
+
+
 def _of_parts(scene: RockMass) -> Iterator[str]:
     """Warn where a pressure acts on more than half of an opening, as if its points were swapped."""
     outline = shape_of(scene.domain)
@@ -208,4 +230,12 @@ def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> flo
     return onset(pulse) + away / fastest(scene)
 
 
-RULES = (*RULES_OF_PLACES, _of_directions, _of_wavelength, _of_rollers, _of_parts, _of_starts)
+RULES = (
+    *RULES_OF_PLACES,
+    _of_directions,
+    _of_wavelength,
+    _of_rollers,
+    _of_halves,
+    _of_parts,
+    _of_starts,
+)

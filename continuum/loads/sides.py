@@ -112,19 +112,20 @@ def bearing_sides(scene: AnyScene, body: Body) -> csr_matrix | None:
 
 
 def held_sides(scene: AnyScene, body: Body, time: Clock | None = None) -> Held:
-    """Return the freedoms of fixed sides, normal ones of rollers, and a shaken side's motion."""
-    base: Any = next(iter(scene.bases), None)
-    dim, direction = body.components, np.full(body.stiffness.shape[0], np.nan)
+    """Return the freedoms of fixed sides, normal ones of rollers, and the motion of bases."""
+    bases: list[Any] = scene.bases
+    dim, n, moved = body.components, body.stiffness.shape[0], None
+    held, direction = np.zeros(n, bool), np.zeros((n, len(bases)))
+    ways = np.array([np.array(one.direction)[directions(body)] for one in bases]).reshape(-1, dim)
     for name in scene.boundaries.sides("fixed", "roller"):
-        node, given = np.unique(facets_on(body, [name]).node), np.zeros(dim)
-        shaken = base is not None and name == base.side
-        if shaken:
-            given = np.array(base.direction, dtype=float)[directions(body)]
+        node, own = np.unique(facets_on(body, [name]).node), [one.side == name for one in bases]
         rolls = name in scene.boundaries.sides("roller")
         for c in [AXIS[dim][name]] if rolls else range(dim):
-            of = dim * node + c
-            direction[of] = np.where(np.isnan(direction[of]) | shaken, given[c], direction[of])
-    freedom, steps = np.flatnonzero(~np.isnan(direction)), None
-    if base is not None and time is not None:
-        steps = base_steps(base, time.dt, time.steps + time.stride + 1).__getitem__
-    return Held(freedom, direction[freedom], steps)
+            held[dim * node + c] = True
+            if any(own):
+                direction[dim * node + c] = ways[:, c] * own
+    if bases and time is not None:
+        count = time.steps + time.stride + 1
+        moved = np.column_stack([base_steps(one, time.dt, count) for one in bases]).__getitem__
+    freedom = np.flatnonzero(held)
+    return Held(freedom, direction[freedom], moved)

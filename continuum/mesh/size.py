@@ -116,6 +116,8 @@ def of_coarse_cells(
     place = placed(corners[worst].mean(axis=0), 4)
     gives = f"{'rock of a script' if scripted else 'the mesh'}: elements at {place} have"
     where = f"nodes per wavelength at {frequency:.4g} Hz, below which 95 % of the energy lies"
-    longest = float(size.max(axis=1)[worst] * nodes[worst] / LEAST_BLOCKS)
-    remedy = "" if scene.is_column else f": numerics.continuum.size = {longest:.2g} m"
+    remedy = ""
+    if not scene.is_column:
+        given = min(float(size.max(axis=1)[worst]), scene.numerics.continuum.size or np.inf)
+        remedy = f": numerics.continuum.size = {given * nodes[worst] / LEAST_BLOCKS:.2g} m"
     yield from of_resolution(gives, float(nodes[worst]), where, remedy)

@@ -100,7 +100,7 @@ def leapfrog_for(flags: StepFlags) -> Callable:
         """Take the steps first .. last - 1, with a sample at each multiple of `stride`.
 
         drive : forces on driven freedoms [steps, k], N. moves : motion of fixed freedoms in each
-        step [steps], m. span : first, last, stride.
+        step [steps, motions], m. span : first, last, stride.
         """
         setting = flush_denormals()
         c, s, w, out, drive = borrowed((c, s, w, out, drive))
@@ -192,7 +192,10 @@ def leapfrog_for(flags: StepFlags) -> Callable:
                         braked += spring[k, a] * closure[k, a]
                     braking[k, a] = braked
             for k in range(fixed.size):
-                v[fixed[k]] = direction[k] * moves[n - first] / dt
+                found = 0.0
+                for b in range(moves.shape[1]):
+                    found += direction[k, b] * moves[n - first, b]
+                v[fixed[k]] = found / dt
 
             for later in range(2):  # half a step before, and after
                 way = v if later else v_before

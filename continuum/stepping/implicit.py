@@ -74,7 +74,7 @@ class Implicit:
         forces = own.forces(u, v, u, dt, own.past, none)
         self.now = Moment(u, v, a, copied(forces), np.zeros(4))
         self._factors: tuple[float, np.ndarray, Factors] | None = None
-        self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1))
+        self._weighs, self._motion = problem.stiffness.diagonal(), np.zeros((3, 1, 0))
 
     @property
     def u(self) -> np.ndarray:
@@ -231,7 +231,7 @@ class Implicit:
         if held.moved is not None:
             given = (1 - share) * self._motion[:, n] + share * self._motion[:, n + 1]
             for values, value in zip(moment[:3], given, strict=True):
-                values[held.freedom] = value * held.direction
+                values[held.freedom] = held.direction @ value
 
     def _record(self, s: int) -> None:
         """Record sample s."""
@@ -261,10 +261,10 @@ class Implicit:
 
 
 def motion_of(held: Held, count: int, dt: float) -> np.ndarray:
-    """Return displacement, velocity and acceleration of held freedoms at `count` steps [3, count]:
-    sums of the given moves and their centred differences, at rest before t = 0."""
+    """Return displacement, velocity and acceleration of held freedoms at `count` steps [3, count,
+    motions]: sums of the given moves and their centred differences, at rest before t = 0."""
     if held.moved is None:
-        return np.zeros((3, count))
+        return np.zeros((3, count, 0))
     after = held.moved(np.arange(count))
-    before = np.concatenate([[0.0], after[:-1]])
-    return np.array([before.cumsum(), (before + after) / (2 * dt), (after - before) / dt**2])
+    before = np.concatenate([np.zeros_like(after[:1]), after[:-1]])
+    return np.array([before.cumsum(axis=0), (before + after) / (2 * dt), (after - before) / dt**2])

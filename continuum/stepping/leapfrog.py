@@ -76,7 +76,7 @@ class Leapfrog:
         size = max(1, BUFFER // max(1, self.constants.driven.size))
         for begin in range(first, max(last, first + 1), size):
             end = min(begin + size, last)
-            drive, moved = np.zeros((end - begin, 0)), np.zeros(end - begin)
+            drive, moved = np.zeros((2, end - begin, 0))
             if forces is not None:
                 drive = np.ascontiguousarray(forces.at(begin, end))
             if held.moved is not None:

@@ -32,8 +32,8 @@ class Dashpots(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Freedoms with prescribed motion: freedom [k] moves by direction [k] times moved(steps) [n],
-    m, from each step to the next; moved is None where none moves."""
+    """Freedoms with prescribed motion: freedom [k] moves by direction [k, m] times moved(steps)
+    [n, m], m, of each motion from each step to the next; moved is None where none moves."""
 
     freedom: np.ndarray
     direction: np.ndarray
@@ -86,7 +86,7 @@ class Problem(NamedTuple):
     steady: np.ndarray | None = None
     quiet: Dashpots = NO_DASHPOTS
     forces: Any = None
-    held: Held = Held(np.zeros(0, np.int64), np.zeros(0))
+    held: Held = Held(np.zeros(0, np.int64), np.zeros((0, 0)))
     comm: Any = None
     counted: int | None = None
 

@@ -68,6 +68,16 @@ def test_what_leaves_a_whole_side_is_measured_as_a_wave_is(mass):
     assert "the joint sets give" in line
 
 
+@pytest.mark.parametrize(("offset", "cut"), [(0.0, 0), (0.5, 2)])
+def test_bricks_that_periodic_sides_cut_are_counted(offset, cut, rock_with):
+    """Of four courses every second has a joint along the sides, or each has."""
+    bricks = SETS[0], SETS[1] | {"ends_at": ["a"], "offset": offset}
+    tables = {"domain": {"size": [4.0, 8.0]}, "boundaries": PERIODIC}
+    found = "\n".join(warnings(rock_with(*bricks, **tables)))
+    assert ("cuts" in found) == bool(cut)
+    assert not cut or f"boundaries.left = 'periodic' cuts {cut} rigid blocks in two" in found
+
+
 def test_rollers_along_the_way_of_a_wave_that_moves_rock_into_them_are_named(mass):
     rollers = {"left": "roller", "right": "roller", "bottom": "fixed"}
     assert warnings(mass(waves=[], boundaries=rollers, loads=[SHAKEN])) == []

@@ -8,6 +8,7 @@ import pytest
 
 from jointwave.cases.errors import SceneError
 from jointwave.cases.read import load
+from jointwave.cases.warnings import warnings
 from jointwave.compare.cli.scene_files import write_new
 from jointwave.compare.engines import solver
 from jointwave.compare.runs.checkpoint.signature import differences, signature
@@ -148,3 +149,11 @@ def test_what_does_not_fit_blocks_is_said_in_a_line(text, blocks, words, scene):
 def test_rigid_blocks_are_those_of_the_file(text, words, scene):
     answer = solver("dem").applies(scene(text))
     assert not answer and words in answer.reason
+
+
+def test_warnings_are_of_the_blocks_of_the_file(scene):
+    """Bricks of 1 m by 0.5 m, an S wave of 6.8 m, and spacings in millimetres."""
+    apart, sizes = warnings(scene(but("spacing = 0.5", "spacing = 500.0")))
+    assert "the largest of domain.blocks gives 9.62 rigid blocks per wavelength of S" in sizes
+    assert "joint_sets[0].spacing = 500 m, but its joints in domain.blocks are about 0.6" in apart
+    assert "500 mm is 0.5 m" in apart

@@ -28,7 +28,7 @@ def pushed(dim, dt, eta=None, held=False):
     every = STEP * np.arange(1000)
     push = Force(dim * top, body.sides["top"].weight, lambda t: np.interp(t, every, noise), dt)
     fixed = (dim * below[: len(below) * held, None] + np.arange(dim)).ravel()
-    stays = Held(fixed, np.zeros(fixed.size))
+    stays = Held(fixed, np.zeros((fixed.size, 0)))
     return problem(body, joined(2, dim > 1, eta), top[:1], forces=push, held=stays)
 
 
