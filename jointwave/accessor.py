@@ -44,9 +44,13 @@ class ResultFigures:
         return draw_solutions(list(found.values()), False, printed(width, font_size))
 
     def plot_map(
-        self, quantity: str = "ppv", other: xr.Dataset | None = None, time: float | None = None
+        self,
+        quantity: str = "ppv",
+        other: xr.Dataset | None = None,
+        time: float | None = None,
+        section: str | None = None,
     ) -> Figure:
         """Return a map of the whole body, as `jointwave.plot_map` does."""
         from jointwave.compare.figures.charts.maps import plot_map
 
-        return plot_map(self.result, quantity, other, time)
+        return plot_map(self.result, quantity, other, time, section)

@@ -81,6 +81,9 @@ class Picture(options.SceneOptions):
     time: float | None = typer.Option(
         None, metavar="T", help="Instant of the map, s (default: where it is strongest)."
     )
+    section: str | None = typer.Option(
+        None, metavar="AXIS=M", help="Plane of a map in space, as y=25 (m)."
+    )
     explode: float | None = typer.Option(
         None,
         min=0.0,

@@ -43,15 +43,15 @@ def picture(asked: Picture) -> None:
     name = re.sub(r"\.(toml|nc)$", "", source.resolve().name)
     path = asked.out or Path(f"{name}-{map_of}.png" if of_results else f"{name}.png")
     check_out(path)
+    of_maps = {"--map": asked.quantity, "--time": asked.time, "--section": asked.section}
     if of_results:
         if asked.changes or asked.variant is not None:
             raise SceneError("--set, --variant", "", None, "are of a scene, not of a folder")
         if asked.explode is not None:
             raise SceneError("--explode", "", None, "is of a scene in space, not of a folder")
-        drawn, title = _map(source, map_of, asked.time)
-    elif asked.quantity is not None or asked.time is not None:
+        drawn, title = _map(source, map_of, asked.time, asked.section)
+    elif key := next((k for k, x in of_maps.items() if x is not None), None):
         run = f"jointwave run {asked.scene} --set record.fields=1e-3 --out FOLDER"
-        key = "--map" if asked.quantity else "--time"
         raise SceneError(key, "", None, f"is of results: `{run}` first")
     else:
         scenes = load(asked)
@@ -63,7 +63,9 @@ def picture(asked: Picture) -> None:
     say(f"wrote {write_drawing(path, drawn, title)}")
 
 
-def _map(folder: Path, quantity: str, time: float | None) -> tuple[Drawing, str]:
+def _map(
+    folder: Path, quantity: str, time: float | None, section: str | None
+) -> tuple[Drawing, str]:
     """Return the map of at most two results in a folder, and its title."""
     files = [folder / f"{name}.nc" for name in ENGINES] if folder.is_dir() else [folder]
     files = [file for file in files if file.exists()]
@@ -76,7 +78,7 @@ def _map(folder: Path, quantity: str, time: float | None) -> tuple[Drawing, str]
         allowed = f"has results of two scenes, by {', '.join(differing)}: name one of the files"
         raise SceneError(str(folder), "", None, allowed)
     scene = scene_of(results[0])
-    return draw_maps(maps_of(scene, results, quantity, time), scene), scene.title
+    return draw_maps(maps_of(scene, results, quantity, time, section), scene), scene.title
 
 
 def _result(file: Path) -> xr.Dataset:

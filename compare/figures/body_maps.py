@@ -15,8 +15,9 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation import snapshots
 from jointwave.compare.figures.animation.bodies import Body, body_of
-from jointwave.compare.figures.animation.snapshots import Quantity
+from jointwave.compare.figures.animation.snapshots import Quantity, ViewSettings
 from jointwave.compare.figures.drawing.plane import seen
+from jointwave.compare.figures.section import Section, cut_cells, cut_joints, section_of
 from jointwave.results.snapshots import snapshots_of
 
 #: Tables that do not affect geometry, and a load to replace one whose file may be missing.
@@ -33,6 +34,7 @@ class Map(NamedTuple):
     corners : of faces [faces, corners, 2]. joints : pieces of joints [pieces, 2, 2]. values : of
     the faces or, for slip, of the pieces, in the unit of the quantity. time : of the snapshot, s;
     None for the peak over all. axes : their names. stretch : factor of the upward coordinate.
+    section : of a body in space.
     """
 
     corners: np.ndarray
@@ -42,6 +44,13 @@ class Map(NamedTuple):
     quantity: Quantity
     axes: tuple[str, str]
     stretch: float
+    section: Section | None = None
+
+    @property
+    def words(self) -> list[str]:
+        """The section and the instant, where there are any."""
+        at = [] if self.time is None else [f"at {1e3 * self.time:.4g} ms"]
+        return [self.section.name, *at] if self.section else at
 
     @property
     def sizes(self) -> np.ndarray:
@@ -57,15 +66,17 @@ def scene_of(result: xr.Dataset) -> AnyScene:
     tables = {key: value for key, value in tables.items() if key not in ASIDE}
     tables["record"]["fields"] = None
     if "domain" in tables:
-        if "point_z" in result.coords:
-            allowed = "is of bodies in the plane: animate and view show a scene in space"
-            raise SceneError(tables["title"], "map", None, allowed)
-        return RockMass.model_validate(tables)
+        dimension = len(tables["domain"]["size"] or "xy")
+        return RockMass.model_validate(tables, context={"folder": ".", "dimension": dimension})
     return Scene.model_validate(tables | {"load": tables["load"] | LOAD})
 
 
 def maps_of(
-    scene: AnyScene, results: Sequence[xr.Dataset], quantity: str, time: float | None = None
+    scene: AnyScene,
+    results: Sequence[xr.Dataset],
+    quantity: str,
+    time: float | None = None,
+    section: str | None = None,
 ) -> dict[str, Map]:
     """Return the maps of results of the same body, by name; raises SceneError as `plot_map`."""
     stress = snapshots.quantities_of(scene)["stress"]
@@ -76,6 +87,9 @@ def maps_of(
     if quantity == "ppv" and time is not None:
         why = "is of one instant, ppv the largest of all: choose speed, stress or slip"
         raise SceneError(scene.title, "time", time, why)
+    plane = section_of(scene, section) if scene.in_space else None
+    if section is not None and plane is None:
+        raise SceneError(scene.title, "section", section, "is of a rock mass in space")
     engines, variants = ([str(one.attrs[key]) for one in results] for key in ("engine", "variant"))
     called = list(map(label_of, engines))
     for more in (variants, [str(k + 1) for k in range(len(called))]):
@@ -83,7 +97,7 @@ def maps_of(
             called = [", ".join(filter(None, both)) for both in zip(called, more, strict=True)]
     found: dict[str, Map] = {}
     for result, name in zip(results, called, strict=True):
-        found[name] = one = _map(scene, result, known[quantity], time)
+        found[name] = one = _map(scene, result, known[quantity], time, plane)
         time = time if one.time is None else one.time
     ends = [(one.corners.min((0, 1)), one.corners.max((0, 1))) for one in found.values()]
     for end in ends[1:]:
@@ -92,7 +106,13 @@ def maps_of(
     return found
 
 
-def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | None) -> Map:
+def _map(
+    scene: AnyScene,
+    result: xr.Dataset,
+    quantity: Quantity,
+    time: float | None,
+    section: Section | None,
+) -> Map:
     """Return the map of a result's snapshot nearest to a time (None: the one with the largest
     values); for the peak over all snapshots."""
     s = snapshots_of(result)
@@ -100,8 +120,12 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
         why = "is needed for a map: the result has no snapshots"
         raise SceneError(scene.title, "record.fields", None, why)
     view = snapshots.settings_for(scene, {"": s})
+    if section is not None:
+        across, upwards = np.eye(3)[section.axes]
+        s, view = cut_cells(s, section), view._replace(right=across, up=upwards)
     body = body_of(s, view._replace(scale=1.0, stretch=1.0, quantity=quantity)).front()
-    corners, joints, values = body.rest[body.faces][..., [0, 2]], _joints(scene), body.values
+    corners, values = body.rest[body.faces][..., [0, 2]], body.values
+    joints, normals = _joints(scene, view, section)
     if quantity == snapshots.SLIP:
         if not len(joints) or not scene.is_spatial:
             why = "is of joints along which something moves; this body has none"
@@ -113,10 +137,11 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
             nearest = shapely.STRtree(lines).query_nearest(middle, all_matches=False)[1]
             slip = np.abs(result["field_slip"].values[:, nearest])
         else:
-            slip = _slip(body, corners, joints)
+            slip = _slip(body, corners, joints, normals)
         values = quantity.factor * slip
-    axes = ("y", "") if view.side else ("x", "y")
-    found = Map(corners, joints, values[0], None, quantity, axes, view.stretch)
+    right, up = ("xyz"[axis] for axis in (section.axes if section else (0, 1)))
+    axes = ("y", "") if view.side else (right, up)
+    found = Map(corners, joints, values[0], None, quantity, axes, view.stretch, section)
     if quantity == snapshots.PEAK:
         return found
     if time is None:
@@ -129,23 +154,32 @@ def _map(scene: AnyScene, result: xr.Dataset, quantity: Quantity, time: float | 
     return found._replace(values=values[i], time=float(s.time[i]))
 
 
-def _joints(scene: AnyScene) -> np.ndarray:
-    """Return the joints of a scene, cut into pieces [n, 2, 2], in coordinates of the picture, m."""
-    blocks, turn = seen(scene)
-    ends = blocks.contacts.ends[blocks.contacts.joint_set >= 0][..., turn]
-    longest = float(np.ptp(blocks.outlines.corners, axis=0).max()) / PIECES
+def _joints(
+    scene: AnyScene, view: ViewSettings, section: Section | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the joints of a scene, cut into pieces [n, 2, 2], in coordinates of the picture, m,
+    and the unit normal of each in its axes (right, away, up) [n, 3]."""
+    if section is None:
+        blocks, turn = seen(scene)
+        ends = blocks.contacts.ends[blocks.contacts.joint_set >= 0][..., turn]
+        right, up = np.diff(ends, axis=1)[:, 0].T
+        normals = np.stack([-up, 0 * up, right], axis=1)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    else:
+        ends, normals = cut_joints(scene, section)
+        normals = normals @ np.stack([view.right, np.cross(view.up, view.right), view.up], axis=1)
+    longest = float(np.ptp(ends, axis=(0, 1)).max()) / PIECES if len(ends) else 1.0
     lines = shapely.segmentize(shapely.linestrings(ends), longest)
     places, line = shapely.get_coordinates(lines, return_index=True)
-    return np.stack([places[:-1], places[1:]], axis=1)[line[1:] == line[:-1]]
+    same = line[1:] == line[:-1]
+    return np.stack([places[:-1], places[1:]], axis=1)[same], normals[line[1:][same]]
 
 
-def _slip(body: Body, corners: np.ndarray, joints: np.ndarray) -> np.ndarray:
+def _slip(body: Body, corners: np.ndarray, joints: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """Return the magnitude of slip [snapshots, pieces], m: the tangential displacement jump between
     both sides of a joint, with displacements linear over each face."""
-    along = joints[:, 1] - joints[:, 0]
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
-    normal = np.stack([-along[:, 1], 0 * along[:, 0], along[:, 0]], axis=1)  # right, away, up
-    beside = CLOSE * np.ptp(corners) * normal[:, [0, 2]]
+    across = normals[:, [0, 2]]
+    beside = CLOSE * np.ptp(corners) * across / np.linalg.norm(across, axis=1, keepdims=True)
     moved = []
     for at in (joints.mean(axis=1) - beside, joints.mean(axis=1) + beside):
         face = _nearest(corners, at)
@@ -154,7 +188,7 @@ def _slip(body: Body, corners: np.ndarray, joints: np.ndarray) -> np.ndarray:
         weights = 1 / corners.shape[1] + np.einsum("nd,ndk->nk", at - middle[:, 0], slopes)
         moved.append(np.einsum("tnkc,nk->tnc", body.motion[:, body.faces[face]], weights))
     jump = moved[1] - moved[0]
-    opening = np.einsum("tnc,nc->tn", jump, normal)[..., None] * normal
+    opening = np.einsum("tnc,nc->tn", jump, normals)[..., None] * normals
     return np.linalg.norm(jump - opening, axis=2)
 
 

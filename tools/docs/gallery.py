@@ -17,18 +17,20 @@ CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
 SCENE = re.compile(r"```toml title=\"([^\"]+)\"\n(.*?)```", re.DOTALL)
 SHIPPED = re.compile(r"is shipped as `([^`]+)`")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)]+)\)")
+COMMAND = re.compile(r"^    jointwave (.+)$", re.MULTILINE)
 COLOURS, SMALL = 128, (640, 360)  # size of the palette; size of a film, pixels
-FILM = ("--frames", "25", "--seconds", "2.5")
 
 
 class Page(NamedTuple):
-    """A page: its scene's file name, the scene as shown and as stored, its code and pictures."""
+    """A page: its scene's file name, the scene as shown and as stored, its code, commands and
+    pictures."""
 
     path: Path
     file: str
     shown: str
     kept: str
     code: str
+    commands: list[str]
     pictures: list[str]
 
 
@@ -38,14 +40,17 @@ def read(path: Path) -> Page:
     ((file, shown),), (code,) = SCENE.findall(text), CODE.findall(text)
     shipped = SHIPPED.search(text)
     kept = ROOT / "cases" / f"{shipped[1]}.toml" if shipped else GALLERY / file
-    return Page(path, file, shown, kept.read_text(), code, PICTURE.findall(text))
+    found = COMMAND.findall(text), PICTURE.findall(text)
+    return Page(path, file, shown, kept.read_text(), code, *found)
 
 
 def run(page: Page, folder: Path) -> None:
-    """Run a page's code in a folder with its scene."""
+    """Run a page's code and commands in a folder with its scene."""
     (folder / page.file).write_text(page.kept, encoding="utf-8")
     with chdir(folder):
         exec(compile(page.code, str(page.path), "exec"), {})
+    for words in map(str.split, page.commands):
+        subprocess.run([sys.executable, "-m", "jointwave", *words], check=True, cwd=folder)
 
 
 def make(page: Page, folder: Path) -> None:
@@ -54,9 +59,6 @@ def make(page: Page, folder: Path) -> None:
     page.path.write_text(SCENE.sub(lambda _: whole, text))
     run(page, folder)
     for made in (folder / name for name in page.pictures):
-        if made.suffix == ".gif":
-            command = ("jointwave", "animate", page.file, "--out", made.name, *FILM)
-            subprocess.run([sys.executable, "-m", *command], check=True, cwd=folder)
         with Image.open(made) as drawn:
             size, film = drawn.size, {}
             if made.suffix == ".gif":

@@ -42,6 +42,7 @@ def plot_map(
     quantity: str = "ppv",
     other: xr.Dataset | None = None,
     time: float | None = None,
+    section: str | None = None,
     width: float = 190.0,
     font_size: float = 8.0,
 ) -> Figure:
@@ -49,8 +50,10 @@ def plot_map(
 
     result, other : with snapshots (`record.fields`), of the same body. quantity : "ppv", the
     largest particle velocity over all snapshots; "speed"; "stress", axial in a pillar, else the
-    in-plane principal stress of larger magnitude; "slip" of joints. time : of the snapshot, s;
-    None: the one with the largest mean square. width : of the figure, mm. font_size : points.
+    principal stress of larger magnitude (in the plane of a plane scene); "slip" of joints. time :
+    of the snapshot, s; None: the one with the largest mean square. section : of a rock mass in
+    space, as "y=25", in m; None: normal to y through the middle of the openings, else the front.
+    Along a face it shows the rock behind. width : of the figure, mm. font_size : points.
 
     Both results share one colour scale. If few values far exceed it, the colour bar ends in an
     arrow and states their share of the body. The difference is the second minus the first.
@@ -60,7 +63,8 @@ def plot_map(
     for one in given:
         require(one, xr.Dataset, "plot_map", "type", A_RESULT)
     scene = scene_of(result)
-    return draw_maps(maps_of(scene, given, quantity, time), scene, printed(width, font_size))
+    maps = maps_of(scene, given, quantity, time, section)
+    return draw_maps(maps, scene, printed(width, font_size))
 
 
 def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) -> Figure:
@@ -85,8 +89,7 @@ def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) ->
         if less:
             unit = f"difference ({first.quantity.name.partition(' (')[2]}"
             _draw(axes[len(maps) :], less, "signed", DIFFERENCE, unit, letters)
-        words = ", ".join(part for part in (scene.title, scene.name) if part)
-        words += "" if first.time is None else f", at {1e3 * first.time:.4g} ms"
+        words = ", ".join(part for part in (scene.title, scene.name, *first.words) if part)
         title = fill(words, int(letters * width))
         figure.suptitle(title, x=0.01, ha="left", parse_math=False)
         right, upwards = first.axes
@@ -145,14 +148,15 @@ def _draw_one(ax: Axes, one: Map, colours: ScalarMappable) -> None:
 
 
 def peak_velocities(name: str, comparisons: list[Comparison]) -> list[SceneFigure]:
-    """Return a map of peak velocity per variant, for a plane rock mass with snapshots."""
+    """Return a map of peak velocity per variant, for a rock mass with snapshots."""
     found = []
     for k, (variant, one) in enumerate(named(comparisons)):
         results = [one.results[engine] for engine in in_order(one.results)]
         results = [result for result in results if "field_velocity" in result]
-        if one.scene.in_plane and results:
+        if len(one.scene.axes) > 1 and results:
             maps = maps_of(one.scene, results, "ppv")
-            columns = "engine", "x (m)", "y (m)", "peak velocity (m/s)"
+            right, up = next(iter(maps.values())).axes
+            columns = "engine", f"{right} (m)", f"{up} (m)", "peak velocity (m/s)"
             parts = [
                 pd.DataFrame(
                     dict(zip(columns, (n, *m.corners.mean(axis=1).T, m.values), strict=True))

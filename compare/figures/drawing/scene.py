@@ -1,12 +1,14 @@
 """The figure of a scene: drawings of its variants, the load over time and a legend."""
 
+from operator import truediv
 from textwrap import fill
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from jointwave.cases.loads import history_of
 from jointwave.cases.scene_type import AnyScene
@@ -64,11 +66,16 @@ def _figure(scenes: dict[str, tuple[AnyScene, Sketch]]) -> Figure:
     pairs = 1 if len(scenes) == 1 or sketches[0].ratio < FLAT else 2
     rows = [sketches[k : k + pairs] for k in range(0, len(sketches), pairs)]
     width = WIDTH / pairs - PULSE - 0.9
-    ratios = (max(sketch.ratio for sketch in row) for row in rows)
+    ratios = [max(sketch.ratio for sketch in row) for row in rows]
     heights = [max(min(TALLEST, ratio * width), LOW) for ratio in ratios]
+    beside = max(0.0, width - max(map(truediv, heights, ratios))) / 2  # of narrow drawings
+    width -= 2 * beside
     foot = FOOT + LINE * (len(scenes) > 1) + LINE * max(s.size.count("\n") for s in sketches)
     with blank(sum(heights) + len(rows) * foot + LINE) as figure:
         shape: dict[str, Any] = {"width_ratios": [width, PULSE] * pairs, "height_ratios": heights}
+        layout = cast(ConstrainedLayoutEngine, figure.get_layout_engine())
+        share = pairs * beside / WIDTH
+        layout.set(rect=(share, 0.0, 1 - 2 * share, 1.0))
         axes = figure.subplots(len(rows), 2 * pairs, squeeze=False, **shape).reshape(-1, 2)
         handles: dict[str, Any] = {}
         for k, (words, (scene, sketch)) in enumerate(scenes.items()):

@@ -22,6 +22,7 @@ from jointwave.compare.figures.drawing.sketch import (
     note,
     surroundings,
 )
+from jointwave.compare.figures.section import middle_of_openings
 
 TURN, RISE = np.radians([28.0, 24.0])  # azimuth of the viewer from the front, and elevation
 RIGHT = np.array([np.cos(TURN), np.sin(TURN), 0.0])
@@ -42,9 +43,8 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     explode : how far blocks are moved apart, over their distance from the middle.
     """
     blocks, domain = blocks_of_scene(scene), shape_of(scene.domain)
-    walls = [corners for one, _ in domain.solids for corners, _ in one.faces()]
-    walls += scene.domain.holes if domain.given is not None else []
-    behind = np.concatenate(walls)[:, 1].mean() if walls else -np.inf
+    middle = middle_of_openings(scene)
+    behind, has_openings = (-np.inf, False) if middle is None else (middle, True)
     shift = explode * (blocks.centroid - (domain.low + domain.high) / 2)
     faces, colours = _faces(scene, blocks, blocks.centroid[:, 1] > behind, shift)
     places = np.concatenate(faces) @ ONTO.T
@@ -53,9 +53,9 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
     low, high = low - margin, high + margin
     by_pyvista = find_spec("pyvista") is not None
     named = {one.name: SETS[k % len(SETS)] for k, one in enumerate(scene.joint_sets)}
-    named = named if walls or explode else {}  # else no joint face is visible
+    named = named if has_openings or explode else {}  # else no joint face is visible
     named |= {one.name: ROCKS[(k + 1) % len(ROCKS)] for k, one in enumerate(scene.regions)}
-    named |= {"opening": WALLS} if walls else {}
+    named |= {"opening": WALLS} if has_openings else {}
     size = float((domain.high - domain.low).max())
     shapes = list[Artist]()
     if not by_pyvista:
@@ -73,7 +73,7 @@ def sketch_of(scene: RockMass, explode: float = 0.0) -> Sketch:
         shapes.append(note(foot + 0.75 * margin * axis, name, "center"))
     words = " × ".join(f"{x:g}" for x in domain.high - domain.low) + f" m, {blocks.count:,} blocks"
     words += f", moved apart by {explode:g} of their distance" if explode else ""
-    words += "\ncut open through the middle of the openings" if walls else ""
+    words += "\ncut open through the middle of the openings" if has_openings else ""
     image = _rendered(faces, colours, low, high) if by_pyvista else None
     return Sketch(shapes, low, high, ("right", "up"), size=words, ticks="", image=image)
 
