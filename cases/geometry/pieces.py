@@ -9,6 +9,13 @@ from jointwave.cases.geometry.cut import cut, one_plane
 from jointwave.cases.geometry.measure import cell_moments, facet_moments, least_angles, widths
 from jointwave.cases.geometry.relations import groups
 
+LAYER = 5.0  # largest thickness of a layer over volume per surface: 2 if thin, 4 for a square
+PARALLEL_FACES = 1 - 1e-9  # cosine of the angle within which faces are parallel
+BESIDE = (
+    "a parallel joint or boundary of a region, less than domain.least_width: put both in one "
+    "plane, or set it below that"
+)
+
 
 class Pieces:
     """Cells of a complex that are to be merged; one of its cells gives each piece its number.
@@ -25,7 +32,8 @@ class Pieces:
         corners, self._area = body.corners(self.half), moments.size
         self._open = across[self.half.facet]
         joint_set = body.joint_set[self.half.facet]
-        self._joint = (joint_set >= 0) & (joint_set < kept)
+        self._jointed = joint_set >= 0
+        self._joint = self._jointed & (joint_set < kept)
         volume = cell_moments(body, self.half, moments).size
         self._halves = {int(self.half.cell[own[0]]): own for own in groups(self.half.cell)}
         self._vertices = {int(corners[own[0], 0]): corners[own, 1] for own in groups(corners[:, 0])}
@@ -50,8 +58,22 @@ class Pieces:
             corners = np.append(self._vertices[piece], self._vertices[other])
             heights = self.body.vertices[corners] @ self.half.outward[outer].T
             if (heights <= self._place[outer] + tolerance).all():
+                self._check_layer(piece, other)
                 return other
         return None
+
+    def _check_layer(self, piece: int, other: int) -> None:
+        """Raise Sliver if a thin piece that merges across a joint has a joint or a weld of regions
+        on its other side: rock would lose one of both."""
+        own = self._halves[piece]
+        across = self.half.across[own]
+        between = own[self._jointed[own] & (self.root[across] == other)]
+        facing = own[(across >= 0) & (self._jointed[own] | ~self._open[own])]
+        apart = np.add.outer(self._place[facing], self._place[between])
+        opposed = self.half.outward[facing] @ self.half.outward[between].T < -PARALLEL_FACES
+        if (opposed & (apart < LAYER * self.thickness[piece])).any():
+            place = self.body.vertices[self._vertices[piece]].mean(axis=0)
+            raise Sliver(place, f"a joint is {apart[opposed].min():.3g} m from {BESIDE}")
 
     def joined(self, order: Iterable[int], tolerance: float) -> tuple[Complex | None, list[int]]:
         """Merge cells, in order, with their first convex neighbour. Return the complex, or None if

@@ -10,7 +10,7 @@ from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.partition.joints import region_at, within
 from jointwave.cases.partition.lattice import by_direction, squared
-from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.scene import blocks_of_scene, least_width
 from jointwave.cases.partition.shape import distance, shape_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
@@ -22,12 +22,7 @@ COINCIDENT = 1e-9  # distance below which joints coincide, over the domain's siz
 
 def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
     """Warn where joints of two sets coincide: only the law of the first set holds there."""
-    plain = [
-        (i, one)
-        for i, one in enumerate(scene.joint_sets)
-        if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
-    ]
-    for (i, one), (k, other) in combinations(plain, 2):
+    for (i, one), (k, other) in combinations(_plain(scene), 2):
         normals = np.array([each.normal for each in (one, other)])
         if np.linalg.matrix_rank(normals, tol=PARALLEL) == 1:
             places = (_joint_places(scene, each, normals[1]) for each in (one, other))
@@ -37,6 +32,32 @@ def _of_joints_given_twice(scene: RockMass) -> Iterator[str]:
                     f"joint_sets[{k}] and joint_sets[{i}] have {count} joints in common: there "
                     f"only the law of joint_sets[{i}] holds"
                 )
+
+
+def _of_joints_beside_sides(scene: RockMass) -> Iterator[str]:
+    """Warn of joints that are lost since they are nearer than a block's least width to a side that
+    holds the rock."""
+    least, shape = least_width(scene.domain, scene.joint_sets), shape_of(scene.domain)
+    held = scene.boundaries.sides("periodic", "fixed", "roller")
+    for (i, one), side in product(_plain(scene), held):
+        for corners, n in shape.faces_of(side):
+            if np.linalg.matrix_rank([n, one.normal], tol=PARALLEL) == 1:
+                apart = np.abs(_joint_places(scene, one, n) - corners[0] @ n)
+                apart = apart[(apart > COINCIDENT * scene.reach) & (apart < least)]
+                yield from (
+                    f"joint_sets[{i}] has a joint {x:.3g} m from boundaries.{side}, less than "
+                    f"domain.least_width = {least:.3g} m: it is left out"
+                    for x in apart
+                )
+
+
+def _plain(scene: RockMass) -> list[tuple[int, JointSet]]:
+    """Return the sets, with their indices, whose joints cut the whole domain at known places."""
+    return [
+        (i, one)
+        for i, one in enumerate(scene.joint_sets)
+        if not (one.scatter or one.ends_at or one.regions or scene.domain.file_key)
+    ]
 
 
 def _away(scene: RockMass, one: JointSet, points: np.ndarray) -> np.ndarray:
@@ -146,6 +167,7 @@ def _of_points_at_triangles(scene: RockMass) -> Iterator[str]:
 
 RULES_OF_PLACES = (
     _of_joints_given_twice,
+    _of_joints_beside_sides,
     _of_distances,
     _of_spacings,
     _of_points_on_joints,

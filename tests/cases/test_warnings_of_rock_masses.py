@@ -113,6 +113,20 @@ def test_points_where_the_stress_of_triangles_does_not_converge_are_named(mass):
     assert [one for one in said(**along) if "weld" in one] == []
 
 
+def test_joints_lost_beside_sides_that_hold_the_rock_are_named(mass):
+    """Within a hundredth of the spacing; in the side they are none, and quiet sides lose none that
+    would be seen."""
+    for y, kind, count in (
+        *((0.015, "fixed", 1), (0.015, "roller", 1), (0.015, "quiet", 0)),
+        *((0.025, "fixed", 0), (0.0, "fixed", 0)),
+    ):
+        sides = {"waves": [], "boundaries": {"bottom": kind, "left": "periodic"}}
+        sides["boundaries"]["right"] = "periodic"
+        found = warnings(mass(**sides, joint_sets=[SETS[0] | {"through": [0.0, y]}]))
+        lost = "joint_sets[0] has a joint 0.015 m from boundaries.bottom, less than domain.least"
+        assert sum(line.startswith(lost) for line in found) == count, (y, kind, found)
+
+
 def test_joint_receivers_where_joints_cross_are_named(mass):
     """They read one of four contacts; a metre further on one of two joints, they read it alone."""
     found = warnings(mass(joint_sets=SETS, record__joints=[[4.0, 6.0], [4.0, 7.0]]))

@@ -18,6 +18,7 @@ ROWS = {"dip": 0.0, "spacing": 1.0}
 SCATTERED = {"scatter": 0.01, "seed": 1}
 NEAR = {"dip": 0.0, "through": [0.0, 2.005]}
 TWO = [NEAR, {"dip": 0.0, "through": [0.0, 2.05]}]
+BASE = {"dip": 0.0, "through": [0.0, 0.05]}
 AWAY = {"dip": 45.0, "through": [20.0, 3.0]}
 TUNNEL = SIZE | {"openings": [[[4.0, 1.0], [6.0, 1.0], [6.0, 2.5], [4.0, 2.5]]]}
 DENT = {"outline": [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [7.0, 6.0], [4.0, 3.5], [0.0, 3.5]]}
@@ -31,6 +32,7 @@ def wide(spacing):
 MISSED = "joint_sets[0]: does not cut the domain, or only"
 UNCUT = 'domain: a block is not convex ... domain.non_convex = "cut" ... , 2.5]'
 THIN = "is 0.005 m wide ... domain.least_width = 0.01 ... near [5, 2.0025]"
+LOST = "domain: a joint is 0.005 m from a parallel joint ... domain.least_width ... [5, 2.0025]"
 MANY = "gives about 600,001 blocks ... about 1.5 GB of memory; 500 MB available"
 REFUSED = {
     "a spacing beyond the domain": ([wide(7.0)], SIZE, MISSED),
@@ -40,7 +42,9 @@ REFUSED = {
     "a tunnel inside a row": ([ROWS], TUNNEL, UNCUT),
     "an outline that is not convex": ([ROWS], DENT, "corner of the outline ... near [4, 3.5]"),
     "a row that is too thin": ([ROWS, NEAR], SIZE | {"slivers": "refuse"}, THIN),
-    "a joint beside another": (TWO, SIZE, "joint_sets[0]: is lost ... domain.least_width = 0.06 m"),
+    "a joint lost with a row": ([ROWS, NEAR], SIZE, LOST),
+    "a joint beside another": (TWO, SIZE, "a joint is 0.045 m from a parallel joint"),
+    "a joint beside a side": ([BASE], SIZE, "joint_sets[0]: is lost ... least_width = 0.06 m"),
     "more than the memory": ([wide(1e-5)], SIZE, f"joint_sets[0].spacing = 1e-05: {MANY}"),
     "far more": ([wide(1e-30)], SIZE, "joint_sets[0].spacing = 1e-30: gives about"),
 }
@@ -63,7 +67,7 @@ def test_what_cannot_be_cut_is_refused_in_a_line(rock_with, sets, domain, words,
         ([wide(5.5)], SIZE, 2),
         ([wide(5.5) | SCATTERED], SIZE, 2),
         ([ROWS], TUNNEL | {"non_convex": "cut"}, 6 + 1 + 2),
-        ([ROWS, NEAR], SIZE | {"slivers": "merge"}, 6),
+        ([ROWS, NEAR], SIZE | {"least_width": 0.004}, 7),
         (TWO, SIZE | {"least_width": 0.04}, 3),
     ],
 )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
+from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError, Sliver
 from jointwave.cases.partition.joints import ROCK, region_at
 from jointwave.cases.partition.scene import blocks_of_domain as cut
 from jointwave.cases.schema.rock_mass import Region
@@ -67,12 +67,15 @@ def test_a_joint_along_a_boundary_is_what_that_is(rectangle, joints):
         assert (found.contacts.joint_set[between(found)] == 0).all()
 
 
-def test_slivers_are_joined_to_rock_of_their_own(rectangle, joints):
-    """A bed of a millimetre above the boundary becomes a part of the region's next one."""
-    beds = joints("bed", 0.0, spacing=2.0)
-    found = cut(rectangle(4.0, 6.0), [beds], (), [region("upper", 1.999)])
-    assert of_region(found, 0) == pytest.approx(4 * 4.001, rel=1e-12)
-    assert found.volume.min() > 7.9
+def test_a_joint_beside_a_boundary_is_not_lost(rectangle, joints):
+    """A bed of a millimetre above the boundary would take its joint into the region's next one; in
+    the boundary the joint stays."""
+    beds = [joints("bed", 0.0, spacing=2.0)]
+    with pytest.raises(Sliver, match=r"0.001 m from a parallel joint or boundary .*\[2, 1.9995\]"):
+        cut(rectangle(4.0, 6.0), beds, (), [region("upper", 1.999)])
+    found = cut(rectangle(4.0, 6.0), beds, (), [region("upper", 2.0)])
+    assert of_region(found, 0) == pytest.approx(4 * 4, rel=1e-12)
+    assert (found.contacts.joint_set == 0).all() and found.count == 3
 
 
 LENS = [[2.0, 3.0], [5.0, 2.0], [8.0, 3.5], [6.0, 5.5], [3.0, 5.0]]
