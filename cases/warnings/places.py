@@ -4,19 +4,23 @@ from collections.abc import Iterator
 from itertools import combinations, product
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from jointwave.cases.errors import placed
+from jointwave.cases.geometry.blocks import Blocks
 from jointwave.cases.geometry.cell_complex import PARALLEL
 from jointwave.cases.geometry.locate import sides_at
 from jointwave.cases.partition.joints import region_at, within
 from jointwave.cases.partition.lattice import by_direction, squared
 from jointwave.cases.partition.scene import blocks_of_scene, least_width
-from jointwave.cases.partition.shape import distance, shape_of
+from jointwave.cases.partition.shape import SAME, distance, shape_of
 from jointwave.cases.schema.joint import JointSet
 from jointwave.cases.schema.rock_mass import RockMass
 
 NEAR = 0.05  # largest distance of a receiver from its joint, over the domain's size
 UNLIKE = 10.0  # ratio of spacings of a file's blocks and of the scene
+GAP = 1e-2  # largest gap of faces that were to touch, over the smallest block's size
+ALIKE = 0.999  # cosine of the angle within which they are parallel
 COINCIDENT = 1e-9  # distance below which joints coincide, over the domain's size
 
 
@@ -113,6 +117,7 @@ def _of_spacings(scene: RockMass) -> Iterator[str]:
     if not scene.domain.blocks:
         return
     cut = blocks_of_scene(scene)
+    yield from _of_gaps(cut)
     for i, one in enumerate(scene.joint_sets):
         area = float(cut.contacts.area[cut.contacts.joint_set == i].sum())
         apart = float(cut.volume.sum()) / (area or np.inf)
@@ -122,6 +127,24 @@ def _of_spacings(scene: RockMass) -> Iterator[str]:
                 f"joint_sets[{i}].spacing = {one.spacing:g} m, but its joints in domain.blocks are "
                 f"about {apart:.3g} m apart; {longer:.3g} mm is {longer / 1e3:.3g} m"
             )
+
+
+def _of_gaps(cut: Blocks) -> Iterator[str]:
+    """Warn of blocks of a file with faces so near each other that they were to touch."""
+    most, faces = GAP * float(cut.volume.min()) ** (1 / cut.body.dim), cut.boundary
+    x, n, half = faces.centroid, faces.normal, faces.area ** (1 / max(cut.body.dim - 1, 1)) / 2
+    i, j = cKDTree(x).query_pairs(2 * float(half.max()) + most, output_type="ndarray").T
+    gap = ((x[j] - x[i]) * n[i]).sum(axis=1)
+    beside = np.linalg.norm(x[j] - x[i] - gap[:, None] * n[i], axis=1)
+    least = SAME * float(np.ptp(cut.body.vertices, axis=0).max())  # else in one plane, side by side
+    meant = (np.abs(gap) > least) & (np.abs(gap) < most) & (beside < half[i] + half[j])
+    meant &= (n[i] * n[j]).sum(axis=1) < -ALIKE
+    if meant.any():
+        k = np.flatnonzero(meant)[np.abs(gap[meant]).argmax()]
+        yield (
+            f"domain.blocks has {meant.sum()} pairs of faces up to {gap[k]:.3g} m apart, the "
+            f"widest near {placed(x[i[k]])}: they have no contact, which takes {least:.3g} m at most"
+        )
 
 
 def _of_points_on_joints(scene: RockMass) -> Iterator[str]:

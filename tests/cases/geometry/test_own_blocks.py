@@ -441,3 +441,15 @@ def test_blocks_far_from_the_spacing_of_their_sets_are_named(unit, count, tmp_pa
     scene = scene_of(tmp_path / "wall.obj", [[2.3, 0.5, 1.75]], sets)
     found = [line for line in warnings(scene) if "in domain.blocks are about" in line]
     assert len(found) == count and all("667 mm" in x or "1.14e+03 mm" in x for x in found)
+
+
+@pytest.mark.parametrize("gap, count", [(0.0, 0), (1e-6, 0), (3e-6, 1), (9e-3, 1), (0.02, 0)])
+def test_faces_that_were_to_touch_are_named(gap, count, tmp_path, scene_of):
+    """Two cubes on a plinth, a crack between them; blocks touch within 1e-6 of 2 m, and a hundredth
+    of the smallest block's size may be meant."""
+    plinth, right = cube((0, 0, 0), (2, 1, 1)), cube((1 + gap, 0, 1), (1 - gap, 1, 1))
+    (tmp_path / "wall.obj").write_text(obj(plinth, cube((0, 0, 1)), right))
+    found = warnings(scene_of(tmp_path / "wall.obj", [[0.5, 0.5, 1.5]]))
+    near = [line for line in found if "pairs of faces" in line]
+    assert len(near) == count
+    assert all(f"has 1 pairs of faces up to {gap:.3g} m apart" in line for line in near)
