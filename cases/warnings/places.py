@@ -143,7 +143,7 @@ def _of_gaps(cut: Blocks) -> Iterator[str]:
         k = np.flatnonzero(meant)[np.abs(gap[meant]).argmax()]
         yield (
             f"domain.blocks has {meant.sum()} pairs of faces up to {gap[k]:.3g} m apart, the "
-            f"widest near {placed(x[i[k]])}: they have no contact, which takes {least:.3g} m at most"
+            f"widest near {placed(x[i[k]])}: contact takes at most {least:.3g} m"
         )
 
 
