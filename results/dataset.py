@@ -150,13 +150,15 @@ def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[
     """Return the attributes of a result: scene, solver, initial state, `own` attributes of the run,
     and the scene as JSON, last because of its length.
 
-    starts : "unloaded", "prestressed" or "at rest under gravity". prestress : in every section of a
-    pillar, Pa, if any; in a rock mass it is in the stress of the first sample.
+    folder : of a file of blocks or a mesh, if any. starts : "unloaded", "prestressed" or "at rest
+    under gravity". prestress : in every section of a pillar, Pa, if any; in a rock mass it is in
+    the stress of the first sample.
     """
     text, pressed = scene.model_dump_json(), getattr(scene.prestress, "normal", None)
     starts = "unloaded" if scene.prestress is None else "prestressed"
     if scene.gravity is not None and scene.gravity.static:
         starts = "at rest under gravity"
+    file = getattr(getattr(scene, "domain", None), "mesh_path", None)
     return {
         "engine": engine,
         "kind": scene.kind,
@@ -164,6 +166,7 @@ def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[
         "variant": scene.name,
         "scene_hash": scene_hash(scene, text),
         "starts": starts,
+        **({} if file is None else {"folder": str(file.resolve().parent)}),
         **({} if pressed is None else {"prestress": pressed}),
         "effects": json.dumps(active_effects(scene)),
         "warnings": json.dumps(warnings(scene)),

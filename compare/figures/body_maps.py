@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -61,13 +62,19 @@ class Map(NamedTuple):
 
 
 def scene_of(result: xr.Dataset) -> AnyScene:
-    """Return the scene of a result, without its loads, waves and boundaries."""
+    """Return the scene of a result, without its loads, waves and boundaries. Raises SceneError if
+    the file of its blocks or mesh is not where it was."""
     tables = json.loads(result.attrs["scene"])
     tables = {key: value for key, value in tables.items() if key not in ASIDE}
     tables["record"]["fields"] = None
     if "domain" in tables:
-        dimension = len(tables["domain"]["size"] or "xy")
-        return RockMass.model_validate(tables, context={"folder": ".", "dimension": dimension})
+        size, mesh, blocks = (tables["domain"][key] for key in ("size", "mesh", "blocks"))
+        folder = Path(result.attrs.get("folder", "."))
+        if (file := blocks or mesh) is not None and not (folder / file).is_file():
+            key = "domain.blocks" if blocks else "domain.mesh"
+            raise SceneError(tables["title"], key, str(folder / file), "is not there any more")
+        context = {"folder": folder, "dimension": len(size or "xy"), "asked": {"domain"}}
+        return RockMass.model_validate(tables, context=context)
     return Scene.model_validate(tables | {"load": tables["load"] | LOAD})
 
 

@@ -2,13 +2,14 @@
 
 from math import nan
 
+import meshio
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection, PolyCollection
 from scipy.spatial import Delaunay
 
 import jointwave as jw
-from jointwave.compare.figures.body_maps import difference, maps_of
+from jointwave.compare.figures.body_maps import difference, maps_of, scene_of
 from jointwave.compare.figures.charts.maps import draw_maps, peak_velocities
 from jointwave.compare.figures.section import Section, cut_cells
 from jointwave.compare.misfit.pairs import Comparison
@@ -293,3 +294,21 @@ def test_slip_in_space_is_along_the_joint_whatever_the_section():
         (one,) = maps_of(scene, [rock], "slip", time, section).values()
         here = distance(one.joints.mean(axis=1), [2.0, 2.0]).argmin()
         assert one.values[here] == pytest.approx(1e3 * slip.max(), rel=0.03)
+
+
+def test_blocks_of_a_file_are_found_from_any_folder(tmp_path, monkeypatch):
+    """They are read from the scene's folder, whatever the current one, while they are there."""
+    corners = [[x, y, z] for z in (0.0, 1.0, 2.0) for y in (0.0, 1.0) for x in (0.0, 1.0)]
+    cells = [[4 * k + i for i in (0, 1, 3, 2, 4, 5, 7, 6)] for k in range(2)]
+    (tmp_path / "scene").mkdir()
+    meshio.write(tmp_path / "scene" / "two.vtu", meshio.Mesh(corners, [("hexahedron", cells)]))
+    tables = CUBES | {"domain": {"blocks": "two.vtu"}, "joint_sets": CUBES["joint_sets"][:1]}
+    record = {"points": [[0.5, 0.5, 1.5]], "fields": 5e-3}
+    monkeypatch.chdir(tmp_path / "scene")
+    blocks = jw.simulate(jw.load(tables | {"record": record}))
+    monkeypatch.chdir(tmp_path)
+    (one,) = maps_of(scene_of(blocks), [blocks], "ppv").values()
+    assert one.sizes.sum() == pytest.approx(2.0) and blocks.jw.plot().axes
+    (tmp_path / "scene" / "two.vtu").unlink()
+    with pytest.raises(jw.SceneError, match=r"domain.blocks = .*two.vtu': is not there any more"):
+        jw.plot_map(blocks)
