@@ -4,12 +4,15 @@ from collections.abc import Iterator
 from math import pi
 from typing import Any
 
+import numpy as np
+
 from jointwave.cases.loads import LEAST_BLOCKS, shortest_wave
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.closure import stresses
+from jointwave.cases.partition.pillar import welds
 from jointwave.cases.schema.scene import Scene
 from jointwave.cases.schema.tables import Rock
-from jointwave.cases.warnings.sources import LEAST_DAMPING, of_resolution, onset
+from jointwave.cases.warnings.sources import LEAST_DAMPING, of_dashpot, of_resolution, onset
 
 POISSON = Rock.model_fields["intact_poisson"].default
 MOST_REFLECTED = 0.01  # reflection by a quiet end on a rigid block at the highest frequency
@@ -111,6 +114,16 @@ def _of_quiet_ends(scene: Scene) -> Iterator[str]:
             )
 
 
+def _of_dashpots(scene: Scene) -> Iterator[str]:
+    """Warn of soft layers in intact rock whose dashpots depend on the blocks it is cut into."""
+    p, welded = calibrate(scene), welds(scene)
+    for k, (joint, layer) in enumerate(zip(p.soft, scene.layers, strict=True)):
+        if layer.damping_ratio and welded[joint] and p.own_time_constant is not None:
+            length = f"{np.diff(p.contact_y)[joint]:.3g} m of intact rock"
+            eta = p.own_time_constant[joint]
+            yield of_dashpot(f"soft_layers[{k}]", layer.damping_ratio, length, eta)
+
+
 def _of_receivers_at_joints(scene: Scene) -> Iterator[str]:
     """Warn of velocity receivers at soft layers, across which velocities jump."""
     for y in scene.record.velocity:
@@ -150,6 +163,7 @@ RULES = (
     _of_poisson,
     _of_wavelength,
     _of_quiet_ends,
+    _of_dashpots,
     _of_receivers_at_joints,
     _of_receivers_at_ends,
 )

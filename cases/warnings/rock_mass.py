@@ -12,6 +12,7 @@ from jointwave.cases.loads import LEAST_BLOCKS, highest_frequency
 from jointwave.cases.material.closure import stresses
 from jointwave.cases.material.quiet_sides import impedances
 from jointwave.cases.material.rock import elastic_rock
+from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.partition.joints import region_at, rocks_of
 from jointwave.cases.partition.scene import across_periodic, blocks_of_scene
 from jointwave.cases.partition.shape import distance, loaded_lines, shape_of
@@ -19,7 +20,7 @@ from jointwave.cases.plausible import LENGTH, of_dip, of_value
 from jointwave.cases.schema.pulse import PlaneLoad, Wave
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.cases.warnings.places import COINCIDENT, RULES_OF_PLACES
-from jointwave.cases.warnings.sources import LEAST_DAMPING, of_resolution, onset
+from jointwave.cases.warnings.sources import LEAST_DAMPING, of_dashpot, of_resolution, onset
 
 NEAR_SIDE = 1e-6  # shift from a side into the rock, over the domain's size
 EARLY = 1e-6  # rounding of a wave's onset, over the duration
@@ -219,6 +220,16 @@ def _of_starts(scene: RockMass) -> Iterator[str]:
             )
 
 
+def _of_dashpots(scene: RockMass) -> Iterator[str]:
+    """Warn of single joints, whose dashpots depend on the size of the domain."""
+    for i, one in enumerate(scene.joint_sets):
+        if one.damping_ratio and one.spacing is None:
+            etas = set_time_constants(scene)
+            assert etas is not None
+            length = "half of the domain's extent across it"
+            yield of_dashpot(f"joint_sets[{i}]", one.damping_ratio, length, etas[i])
+
+
 def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> float:
     """Return the time when a wave or load first reaches a place in intact rock, s."""
     if isinstance(pulse, Wave):
@@ -238,4 +249,5 @@ RULES = (
     _of_halves,
     _of_parts,
     _of_starts,
+    _of_dashpots,
 )

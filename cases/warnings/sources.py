@@ -170,6 +170,14 @@ def of_resolution(gives: str, count: float, what: str, remedy: str = "") -> Iter
         yield f"{gives} {count:.3g} {what}; at least {LEAST_BLOCKS:g} resolve it{remedy}"
 
 
+def of_dashpot(table: str, ratio: float, length: str, eta: float) -> str:
+    """Return the warning of a joint whose dashpot depends on a length that is none of its own."""
+    return (
+        f"{table}.damping_ratio = {ratio:g} takes {length} for the block on this joint: its "
+        f"dashpot, now {eta:.3g} s times its stiffness, changes with that length"
+    )
+
+
 def onset(pulse: Pulse) -> float:
     """Return the time when a load or wave first reaches a hundredth of its peak, s."""
     history = pulse.history

@@ -104,7 +104,8 @@ LONG = {"time.duration": 0.12}
 GABOR = {"load.shape": "gabor", "load.period": 0.02}
 COARSE = BAR | {"load.period": 0.003}  # 500 Hz: 2 m, 4 blocks
 ORDER, ELEMENTS = "numerics.continuum.order", "numerics.continuum.elements_per_block"
-LOSSY = BAR["rock"] | {"intact_modulus": 2 * MODULUS, "quality_factor": 20.0}
+INTACT = BAR["rock"] | {"intact_modulus": 2 * MODULUS}
+LOSSY = INTACT | {"quality_factor": 20.0}
 #: What a line begins with: changes of the scene, a key, and its value that is wrong and the same
 #: just within what is meant.
 PILLARS = {
@@ -136,6 +137,13 @@ PILLARS = {
     ),
     "rock.quality_factor = 20 holds from 50 to 149 Hz and rises beyond, but the load": (
         *({"load.period": 0.01, "rock": LOSSY}, "rock.quality_band", [50.0, 149.0], [50.0, 151.0]),
+    ),
+    "soft_layers[0].damping_ratio = 0.1 takes 0.5 m of intact rock for the block": (
+        {
+            "soft_layers": [{"y": 10.0, "normal_stiffness": 1e9, "damping_ratio": 0.1}],
+            "rock": INTACT,
+        },
+        *("segments", [{"y": [0.0, 50.0], "joints": False}], []),
     ),
     "damping.local distorts waves": ({"damping": {"local": 0.8}}, "load.amplitude", 1e6, 0.0),
 }

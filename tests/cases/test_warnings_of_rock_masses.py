@@ -29,6 +29,10 @@ FORCE |= {"at": [10.0, 5.0], "direction": [1.0, 0.0]}
         ({"damping__local": 0.5}, "damping.local distorts waves"),
         ({"numerics__dem__block": 1.0}, "numerics.dem.block = 1 m gives 8.33 rigid blocks"),
         ({"numerics__continuum__size": 2.0}, "numerics.continuum.size = 2 m, of order 2, gives"),
+        (
+            {"joint_sets__0__damping_ratio": 0.1},
+            "joint_sets[0].damping_ratio = 0.1 takes half of the",
+        ),
         ({"joint_sets": SETS}, "the joint sets give 4.17 rigid blocks"),
         ({"joint_sets": [SETS[0] | {"maximum_closure": 1e-5}]}, "waves[0]: joints that close"),
     ],
