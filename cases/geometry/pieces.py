@@ -1,6 +1,7 @@
 """Merging of convex cells: pieces of one block, or slivers that are too thin or too pointed."""
 
 from collections.abc import Iterable, Sequence
+from math import inf
 
 import numpy as np
 
@@ -24,16 +25,18 @@ class Pieces:
     thickness : volume over surface of each cell, m, by cell number.
     """
 
-    def __init__(self, body: Complex, cells: np.ndarray, across: np.ndarray, kept: int = 0) -> None:
+    def __init__(
+        self, body: Complex, cells: np.ndarray, across: np.ndarray, kept: float = inf
+    ) -> None:
         """Set up cells (bool [count]) that merge across some facets (bool [f]); kept : number of
-        leading joint sets across which they merge only as a last choice."""
+        leading joint sets across which they merge only as a last choice; infinite: all alike."""
         self.body, self.root, self.half = body, np.arange(body.count), body.beside(cells)
         moments, self._place = facet_moments(body, self.half.facet), body.places(self.half)
         corners, self._area = body.corners(self.half), moments.size
         self._open = across[self.half.facet]
         joint_set = body.joint_set[self.half.facet]
-        self._jointed = joint_set >= 0
-        self._joint = self._jointed & (joint_set < kept)
+        self._jointed = (joint_set >= 0) & (joint_set < kept)
+        self._joint = self._jointed & (kept < inf)
         volume = cell_moments(body, self.half, moments).size
         self._halves = {int(self.half.cell[own[0]]): own for own in groups(self.half.cell)}
         self._vertices = {int(corners[own[0], 0]): corners[own, 1] for own in groups(corners[:, 0])}
@@ -115,7 +118,7 @@ def without_slivers(
     least_angle: float,
     joins: bool,
     tolerance: float,
-    kept: int = 0,
+    kept: float = inf,
 ) -> Complex:
     """Return a complex without blocks thinner (m) or more pointed (degrees) than the limits.
 
@@ -146,7 +149,7 @@ def without_slivers(
 
 
 def _joined(
-    body: Complex, thin: list[int], tolerance: float, kept: int
+    body: Complex, thin: list[int], tolerance: float, kept: float
 ) -> tuple[Complex | None, int]:
     """Merge slivers with neighbours, or, if none can be, a part of one of them. Return the complex,
     or None if no part can be merged; and the first sliver that fits nowhere."""
@@ -157,12 +160,14 @@ def _joined(
     found, stuck = pieces.joined(thin, tolerance)
     for cell in stuck if found is None else ():
         near = [other for other in pieces.near(cell) if other not in thin]
-        if (found := _split(body, cell, near, tolerance)) is not None:
+        if (found := _split(body, cell, near, tolerance, kept)) is not None:
             break
     return found, (stuck or thin)[0]
 
 
-def _split(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> Complex | None:
+def _split(
+    body: Complex, cell: int, near: Sequence[int], tolerance: float, kept: float
+) -> Complex | None:
     """Return a complex with a sliver cut along a neighbour's face and one part merged with a
     neighbour, or None if no such cut leaves a part that fits."""
     alone, chosen = np.arange(body.count) == cell, np.isin(np.arange(body.count + 1), near)
@@ -176,7 +181,7 @@ def _split(body: Complex, cell: int, near: Sequence[int], tolerance: float) -> C
         split = cut(body, one_plane(half.outward[k], place[k], alone), tolerance).body
         parts = cell, body.count
         cells = chosen | np.isin(np.arange(split.count), parts)
-        pieces = Pieces(split, cells, split.in_rock)
+        pieces = Pieces(split, cells, split.in_rock, kept)
         for part in parts:
             ends = [other for other in pieces.near(part) if other in near]
             if (other := pieces.fitting(part, ends, tolerance)) is not None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
-from math import prod
+from math import inf, prod
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def blocks_of_domain(
         body = taken_out(body, shape.solids, tolerance)
         if domain.non_convex == "refuse":
             check_convex(body, shape.solids)
-        merge, kept = domain.slivers == "merge", len(sets) if further else 0
+        merge, kept = domain.slivers == "merge", len(sets) if further else inf
         limits = domain.least_angle, merge, tolerance, kept
         with suppress(Sliver):
             if further and domain.least_width is None:
