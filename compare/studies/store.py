@@ -8,8 +8,9 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from functools import partial
+from importlib import import_module
 from multiprocessing.resource_tracker import ensure_running
 from pathlib import Path
 from signal import SIG_BLOCK, SIG_SETMASK, SIGINT, pthread_sigmask
@@ -117,6 +118,8 @@ def on_pool(processes: Processes, workers: int, work: Callable[[Pool | None], T]
         return work(partial(in_processes, workers))
     from mpi4py.futures import MPICommExecutor
 
+    with suppress(ImportError):  # PETSc starts on all processes together: one alone would wait
+        import_module("jointwave.continuum.space.fenicsx")
     with MPICommExecutor(processes.comm, root=0) as executor:
         return None if executor is None else work(partial(on_executor, executor))
 

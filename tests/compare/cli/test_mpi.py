@@ -115,6 +115,28 @@ def test_rigid_blocks_run_once_in_the_first_process(told):
     assert {path.name for path in folder.iterdir()} == {"dem.nc", "exact-lattice.nc"}
 
 
+STUDY = """
+title = "Elements"
+scene = "guo-li-2002/fig-03"
+finest = "jointed-bar"
+changes = { "pillar.length" = 3.0, "record.stress" = [1.0], "time.duration" = 2e-3 }
+[[curves]]
+label = "jointed rock"
+method = "continuum-jointed"
+own = "jointed-bar"
+vary = { "numerics.continuum.elements_per_block" = [1, 2] }
+"""
+
+
+def test_a_study_of_deformable_rock_ends(under_mpi, tmp_path):
+    """PETSc, which points of a study import, starts in all processes together or waits for ever."""
+    path, out = tmp_path / "study.toml", tmp_path / "out"
+    path.write_text(STUDY)
+    start = "from jointwave.compare.cli import program; program.main()"
+    under_mpi("-c", start, "study", path, "--out", out, count=2)
+    assert (out / "study.csv").is_file()
+
+
 #: One process fails where the others wait for it, which is told at once: they never arrive.
 SERIAL = """
 import sys
