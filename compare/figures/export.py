@@ -22,6 +22,7 @@ DIGITS = 6  # of the numbers behind a figure
 HEADING, ABSCISSA, LINE = 0.3, 0.45, 0.19  # inches of a heading, the abscissa, a line of legend
 BESIDE = 0.8  # inches beside axes
 LETTER, HANDLE = 0.6, 7.0  # width of a letter and of a legend's handle, over the font size
+NARROW = 4.0  # height over width of axes, above which labels of the abscissa may overlap
 SMALLER = 0.76  # factor of the height of axes in more than two rows
 
 
@@ -41,6 +42,16 @@ def blank(height: float, rc: dict[Any, Any] = RC) -> Iterator[Figure]:
         figure = ShownFigure((width, height), layout="constrained")
         FigureCanvasAgg(figure)
         yield figure
+
+
+def label_ends(ax: Axes) -> None:
+    """Label the abscissa of narrow axes with an aspect at its ends only, outwards."""
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    if float(ax.get_aspect()) * (high - low) > NARROW * (right - left):
+        ticks = [x for x in ax.get_xticks() if left <= x <= right]
+        ax.set_xticks([ticks[0], ticks[-1]])
+        for label, side in zip(ax.get_xticklabels(), ("right", "left"), strict=True):
+            label.set_horizontalalignment(side)
 
 
 @contextmanager

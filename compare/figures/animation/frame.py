@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import label_of
 from jointwave.compare.figures.animation import bodies, snapshots
-from jointwave.compare.figures.export import blank
+from jointwave.compare.figures.export import blank, label_ends
 from jointwave.compare.figures.receivers import panels
 from jointwave.compare.figures.style import RC, UNITS, style, unit_for
 from jointwave.compare.misfit.pairs import Comparison
@@ -62,6 +62,7 @@ class Frame:
                 for ax in axes:
                     ylabel = f"{up} (m){of}" * (ax is axes[0])
                     ax.set(anchor="N", xlabel=f"x (m){of}", ylabel=ylabel)
+                    label_ends(ax)
             label = settings.quantity.label
             label += f"; {100 * beyond:.2g} % is beyond" if beyond else ""
             look: dict[str, Any] = {"aspect": 50, "panchor": False, "label": label}

@@ -20,7 +20,7 @@ from jointwave.compare.figures.animation.bodies import colours_of
 from jointwave.compare.figures.animation.snapshots import SLIP
 from jointwave.compare.figures.body_maps import Map, difference, maps_of, scene_of
 from jointwave.compare.figures.drawing.sketch import MANY, ROCKS
-from jointwave.compare.figures.export import LETTER, SceneFigure, blank
+from jointwave.compare.figures.export import LETTER, SceneFigure, blank, label_ends
 from jointwave.compare.figures.receivers import named
 from jointwave.compare.figures.style import DIFFERENCE, RC, SIZE, printed
 from jointwave.compare.misfit.pairs import Comparison
@@ -100,6 +100,7 @@ def draw_maps(maps: dict[str, Map], scene: AnyScene, rc: dict[Any, Any] = RC) ->
             if not upwards:
                 ax.set(yticks=[])
                 ax.spines["left"].set_visible(False)
+            label_ends(ax)
             ax.label_outer()
     return figure
 

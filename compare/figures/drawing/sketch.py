@@ -16,6 +16,7 @@ from matplotlib.transforms import IdentityTransform
 from jointwave.cases.partition.shape import Shape
 from jointwave.cases.schema.pulse import PlaneLoad
 from jointwave.cases.schema.rock_mass import RockMass
+from jointwave.compare.figures.export import label_ends
 from jointwave.results.stress import stress_components
 
 INK, LOAD, RECEIVER = "#1c2126", "#b3001b", "#00549e"
@@ -76,6 +77,8 @@ class Sketch(NamedTuple):
         if not self.ticks:
             ax.set(xlabel=self.size, ylabel="", xticks=[], frame_on=False)
         ax.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
+        if self.ticks:
+            label_ends(ax)
 
     def table(self) -> pd.DataFrame:
         """Return the ends of every line, and the position of every receiver, with its name."""

@@ -137,6 +137,12 @@ def test_words_lie_over_nothing_else(pillar, collisions, changes):
     assert collisions(drawing(pillar(**changes)).figure) == []
 
 
+def test_labels_of_slender_rock_in_map_coordinates_lie_beside_each_other(collisions):
+    corners = [[1200.0, 300.0], [1202.0, 300.0], [1202.0, 350.0], [1200.0, 350.0]]
+    changes = {"joint_sets": TABLES["joint_sets"][:1], "record": {"points": [[1201.0, 325.0]]}}
+    assert collisions(mass(domain={"outline": corners}, waves=[], **changes)) == []
+
+
 def test_variants_that_look_alike_share_a_drawing(pillar, ink):
     picture = drawing(pillar(), pillar(joints__damping_ratio=0.1), pillar(soft_layers=LAYERS))
     titles = [ax.get_title("left") for ax in picture.figure.axes]
