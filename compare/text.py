@@ -2,7 +2,10 @@
 
 from collections.abc import Callable, Iterable
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NONE = "–"  # in place of a missing number
 
@@ -49,6 +52,13 @@ def cell(value: Any) -> str:
             return NONE
         return f"{value:.0f}" if value.is_integer() and abs(value) < 1e9 else f"{value:.4g}"
     return str(value)
+
+
+def grouped(table: "pd.DataFrame") -> "pd.DataFrame":
+    """Return a table with equal outermost row labels together, if it has several levels of them."""
+    if table.index.nlevels == 1:
+        return table
+    return table.iloc[table.index.get_level_values(0).factorize()[0].argsort(kind="stable")]
 
 
 def span(values: Iterable[float], write: Callable[[float], str] = "{:.3g}".format) -> str:

@@ -23,15 +23,15 @@ from rich.table import Table
 from jointwave.cases.errors import SceneError, printable
 from jointwave.cases.files import is_number
 from jointwave.compare.engines import in_words
-from jointwave.compare.text import cell, table_cell
+from jointwave.compare.text import cell, grouped, table_cell
 
 if TYPE_CHECKING:
     import pandas as pd
 
 EVERY = "JOINTWAVE_PROGRESS"  # environment variable: s between lines of progress, 0 for none
-PIPE, UNFOLDED = 220, 10_000  # widths in characters: of a pipe, and of tables of short cells
+PIPE = 220  # width of a pipe in characters
 TURNED = 4  # most rows of a table that may be transposed
-LONGEST = 40  # characters of a cell that is not folded
+LONGEST = 40  # characters of cells of a column that is not folded
 
 
 @contextmanager
@@ -98,30 +98,36 @@ def say_warnings(lines: Iterable[str]) -> None:
 def show_table(columns: list[str], rows: list[list[str]]) -> None:
     """Print a table of text.
 
-    A table wider than the terminal with few rows is transposed. Long cells are folded; short ones
-    are not: a narrow terminal then wraps whole lines, which can still be read and copied.
+    A table wider than the terminal with few rows is transposed. Columns with long cells are folded;
+    others are not: a narrow terminal then wraps whole lines, which can still be read and copied.
     """
-    widths = (max(map(len, column)) + 2 for column in zip(columns, *rows, strict=True))
-    if len(rows) <= TURNED and sum(widths) - 2 > _console().width:
-        (first, *columns), *rows = map(list, zip(columns, *rows, strict=True))
-        columns = [first, *columns]
-    is_short = all(len(text) <= LONGEST for row in rows for text in row)
-    table = Table(box=None, pad_edge=False)
-    for column in columns:
-        table.add_column(printable(column), overflow="fold", no_wrap=is_short)
-    for row in rows:
-        table.add_row(*map(printable, row))
-    _console(UNFOLDED if is_short else None).print(table, crop=False)
+    room = _console().width
+    cells = [[*map(printable, row)] for row in (columns, *rows)]
+    if len(rows) <= TURNED and sum(width + 2 for width in _widths(cells)) - 2 > room:
+        cells = [list(column) for column in zip(*cells, strict=True)]
+    table, widths = Table(box=None, pad_edge=False), _widths(cells)
+    for name, width in zip(cells[0], widths, strict=True):
+        table.add_column(name, overflow="fold", no_wrap=width <= LONGEST)
+    for row in cells[1:]:
+        table.add_row(*row)
+    needed = sum(min(width, LONGEST) + 2 for width in widths)
+    _console(max(room, needed)).print(table, crop=False)
+
+
+def _widths(cells: list[list[str]]) -> list[int]:
+    """Return the length of the longest cell of each column."""
+    return [max(map(len, column)) for column in zip(*cells, strict=True)]
 
 
 def show_frame(table: "pd.DataFrame") -> None:
-    """Print a table, if it has rows: row labels first (equal outermost labels once, long ones above
-    their rows), with names of solutions in words."""
+    """Print a table, if it has rows: row labels first (equal outermost labels once and together,
+    long ones above their rows), with names of solutions in words."""
     if table.index.nlevels > 1 and max(map(len, map(str, table.index.unique(0)))) > LONGEST:
         for heading, rows in table.groupby(level=0, sort=False):
             say(str(heading))
             show_frame(rows.droplevel(0))
         return
+    table = grouped(table)
     named = table if table.index.names == [None] else table.reset_index()
     columns = [*map(in_words, named.columns)]
     cells = (map(table_cell, row, columns) for row in named.itertuples(False, None))

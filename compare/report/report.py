@@ -36,7 +36,7 @@ from jointwave.compare.runs.timings import machine
 from jointwave.compare.scenes import load_variants
 from jointwave.compare.studies.forecast import Run
 from jointwave.compare.studies.store import DIED, FAILURES, Pool, alone, in_processes
-from jointwave.compare.text import in_seconds, percent, table_cell, times
+from jointwave.compare.text import grouped, in_seconds, percent, table_cell, times
 
 WORKERS = 2  # processes
 SCENES = 0.4  # of the progress of the paper's page; the rest are studies and hard cases
@@ -155,7 +155,7 @@ def _page(
         "command": command,
         "picture": shown.lead,
         "lead": lead(every),
-        "summary": _grouped(pd.concat(worst, axis=1)),
+        "summary": pd.concat(worst, axis=1),
         "claims": [(one.request, claim) for one in solved for claim in one.claims],
         "about": shown.about,
         "every_scene": every,
@@ -209,16 +209,9 @@ def _unbroken(text: str) -> str:
     return text.replace(" %", "\u00a0%").replace("≤ ", "≤\u00a0")
 
 
-def _grouped(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with equal outermost row labels together."""
-    if table.index.nlevels == 1:
-        return table
-    return pd.concat([rows for _, rows in table.groupby(level=0, sort=False)])
-
-
 def _rows(table: pd.DataFrame) -> Markup:
     """Return a table in HTML, with equal row labels grouped, and names of solutions in words."""
-    cells = _grouped(table).apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))
+    cells = grouped(table).apply(lambda c: c.map(lambda x: in_words(table_cell(x, str(c.name)))))
     cells = cells.rename(index=in_words, columns=in_words)
     named = table.index.names != [None]
     return Markup(cells.to_html(border=0, index=named, justify="unset"))

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from contextlib import suppress
 
+import pandas as pd
 import pytest
 
 from jointwave.compare.cli import terminal
@@ -106,6 +107,18 @@ def test_a_table_that_is_too_wide_is_turned(capsys, monkeypatch):
     assert [x.split("  ")[0] for x in capsys.readouterr().out.splitlines()] == header
     terminal.show_table(header, 5 * [row])
     assert capsys.readouterr().out.startswith("engine        a number (m)  a number (s)")
+
+
+def test_a_long_column_is_folded_alone_and_equal_labels_stand_together(capsys, monkeypatch):
+    monkeypatch.setattr(terminal, "PIPE", 30)
+    labels = pd.MultiIndex.from_tuples([("far", 1), ("near", 2), ("far", 3), *[("far", 4)] * 3])
+    terminal.show_frame(pd.DataFrame({"a pair of solutions": "jointed rock ~ " + 40 * "x"}, labels))
+    first, *rows = (line.split() for line in capsys.readouterr().out.splitlines())
+    assert "solutions" in first and [row[:4] for row in rows[:2]] == [
+        ["far", "1", "jointed", "rock"],
+        [40 * "x"],
+    ]
+    assert [row[-4] for row in rows[::2]] == ["1", "3", "4", "4", "4", "2"]
 
 
 INTERRUPTED = """
