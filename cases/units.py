@@ -40,11 +40,12 @@ def _any_of(units: list[str]) -> str:
     return "|".join(map(re.escape, sorted(units, key=len, reverse=True)))
 
 
-#: A unit without brackets. Only units other than SI may follow a blank or _; `8 ms` is a time, and
-#: N is the north.
+#: Units that may follow a blank or _: no single SI unit, which may be part of a name.
+_AFTER_BLANK = [one for one, factor in KNOWN.items() if factor != 1 or "/" in one]
+#: A unit without brackets; `8 ms` is a time, and N is the north.
 _SEPARATED = re.compile(
-    rf"(.*?\S)(?:\s*[,/]\s*|\sin\s)({_any_of([one for one in KNOWN if one != 'N'])})"
-    rf"|(.*?\S)(?:_|(?<!\d)\s)({_any_of([one for one, factor in KNOWN.items() if factor != 1])})"
+    rf"(.*?[^\s,/])(?<!\sin)(?:_|(?<!\d)\s)({_any_of(_AFTER_BLANK)})"
+    rf"|(.*?\S)(?:\s*[,/]\s*|\sin\s)({_any_of([one for one in KNOWN if one != 'N'])})"
 )
 
 

@@ -77,6 +77,8 @@ def _message_and_code(error: BaseException) -> tuple[list[str], int]:
             return [str(error)], 3
         case KeyboardInterrupt():  # before signal handlers are installed
             return ["interrupted"], 130
+        case FileExistsError():
+            return [f"{error.filename}: is a file, must be a folder"], 2
         case OSError():
             return [f"{error.filename or 'output'}: {error.strerror or error}"], 2
         case UnicodeEncodeError():  # in a file name; all other text is UTF-8 or escaped

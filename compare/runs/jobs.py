@@ -4,7 +4,7 @@ from itertools import chain, product
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.engines import ENGINES, applies, selection, solver
 from jointwave.compare.solvers.record import Solver
@@ -24,8 +24,9 @@ def wanted(engines: list[str], models: list[str]) -> list[tuple[str, str | None]
     chosen: dict[str, list[Any]] = {e: [m for m in models if m in known[e]] for e in engines}
     if left := [m for m in models if m not in chain(*chosen.values())]:
         fitting = [engine for engine, of in known.items() if left[0] in of]
-        every = ", ".join(model for of in known.values() for model in of if model)
-        allowed = f"needs --engine {fitting[0]}" if fitting else f"must be one of {every}"
+        every = [model for of in known.values() for model in of if model]
+        one_of = f"must be one of {', '.join(every)}{nearest(left[0], every)}"
+        allowed = f"needs --engine {fitting[0]}" if fitting else one_of
         raise SceneError("--model", left[0], None, allowed)
     found = ((engine, m) for engine, mine in chosen.items() for m in mine or [None])
     return list(dict.fromkeys(found))

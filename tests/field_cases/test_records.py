@@ -287,7 +287,8 @@ def test_a_force_is_in_newtons_in_space_and_per_metre_in_the_plane(tmp_path, mon
 def test_units_of_headers():
     for unit in ("ms", "µs", "m/s²", "kPa"):
         assert split_unit(f"v [{unit}]") == ("v", unit)
-    assert split_unit("velocity, mm/s") == ("velocity", "mm/s")
+    for text in ("v, mm/s", "v mm/s", "v / mm/s", "v/mm/s", "v in mm/s", "v_mm/s"):
+        assert split_unit(text) == ("v", "mm/s") and split_unit(text[:-4] + "m/s") == ("v", "m/s")
     assert split_unit("t in ms") == ("t", "ms") and split_unit("time_ms") == ("time", "ms")
     assert split_unit("gap@[20,30] [mm]") == ("gap@[20,30]", "mm")
     assert split_unit("force, kN") == ("force", "kN")
