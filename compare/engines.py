@@ -7,7 +7,7 @@ from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from jointwave.cases.errors import SceneError
+from jointwave.cases.errors import SceneError, nearest
 from jointwave.cases.run_memory import refuse_beyond_memory, waveform_bytes
 from jointwave.cases.scene_type import AnyScene
 from jointwave.compare.solvers.continuum import EQUIVALENT_ROCK, JOINTED_ROCK
@@ -63,7 +63,8 @@ def solver(name: str) -> Solver:
     if name in ENGINES:
         return ENGINES[name]
     if name not in EXACT:
-        raise SceneError("engine", "", None, f"{name!r} is unknown; allowed: {', '.join(names())}")
+        allowed = f"{name!r} is unknown; allowed: {', '.join(names())}{nearest(name, names())}"
+        raise SceneError("engine", "", None, allowed)
     records = vars(import_module(f".exact.{EXACT[name]}", __package__)).values()
     return next(one for one in records if isinstance(one, Solver) and one.name == name)
 

@@ -260,9 +260,7 @@ class Plan(options.SceneOptions):
     Tries runs in order of cost until one meets the misfit, and prints the command for that run.
     """
 
-    misfit: float = typer.Option(
-        ..., min=0.0, max=0.5, help="Largest misfit, relative L2: 0.02 is 2 %."
-    )
+    misfit: float = typer.Option(..., help="Largest misfit, relative L2: 0.02 is 2 %.")
     seconds: float | None = typer.Option(
         None, min=0.0, help="Limit of stepping, s: the best run within it."
     )

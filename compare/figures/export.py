@@ -51,7 +51,7 @@ def label_ends(ax: Axes) -> None:
         ticks = [x for x in ax.get_xticks() if left <= x <= right]
         ax.set_xticks([ticks[0], ticks[-1]])
         for label, side in zip(ax.get_xticklabels(), ("right", "left"), strict=True):
-            label.set_horizontalalignment(side)
+            label.set(horizontalalignment=side)
 
 
 @contextmanager

@@ -44,8 +44,8 @@ def recording(source: Recording, quantity: str = "velocity") -> xr.Dataset:
     source : a file must be readable by `cases.records` or xarray; its columns are named as
     `velocity_x@20 [mm/s]` or `acceleration@[20,30] [g]`, or anything with a unit, where channels
     NS, EW, UP or HHN, HHE, HHZ are directions of one recorder; FILE:COLUMN or FILE:COLUMN=LABEL
-    selects one. quantity : of numbers without a label or unit. Uneven samples are interpolated
-    linearly. Raises SceneError, one line with what is wrong.
+    selects one. quantity : of numbers that neither a name nor a unit tells. Uneven samples are
+    interpolated linearly. Raises SceneError, one line with what is wrong.
     """
     if isinstance(source, xr.Dataset):
         return source
@@ -92,6 +92,9 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         channels = iter(_channels([one.name.removeprefix("-") for at, one in found if not at]))
         waves: dict[Where, np.ndarray] = {}
         for place, column in found:
+            if not place and "@" in column.name:
+                allowed = "must be as velocity_x@20 [mm/s] or acceleration@[20,30] [g]"
+                raise ValueError(f"{column.name}: {allowed}")
             at: Where = place or (_measured(column, quantity), *next(channels))
             waves[at] = column.si(UNITS[at[0]])
         if len(waves) < len(found):
@@ -120,7 +123,10 @@ def _channels(names: list[str]) -> list[tuple[str, str]]:
 
 
 def _measured(column: Column, quantity: str) -> str:
-    """Return the quantity of a column without a place from its unit, else `quantity`."""
+    """Return the quantity of a column without a place: by its name or unit, else `quantity`."""
+    name = re.match(r"-?([a-z]*)", column.name.lower())
+    if name and name[1] in UNITS:
+        return name[1]
     if not column.unit or column.unit in UNITS[quantity]:
         return quantity
     return next((one for one in MEASURED if column.unit in UNITS[one]), quantity)

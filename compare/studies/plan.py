@@ -26,6 +26,7 @@ from jointwave.compare.studies.measure import Reference, able, exact_reference
 from jointwave.compare.studies.store import FAILURES, reason_of
 
 LONGEST = {"pillar": 20.0, "rock mass": 60.0}  # s of stepping, the limit if none is given
+MOST = 0.5  # largest misfit to plan for; nearly every run is within more
 STALLED = 0.8  # least ratio to the previous error at which smaller steps no longer help
 
 
@@ -66,10 +67,10 @@ class Plan:
     scene: AnyScene
     asked: float
     limit: float | None
-    finest: Reference
+    finest: Reference = field(repr=False)
     reason: str
-    own: dict[str, tuple[Reference, float] | SceneError] = field(default_factory=dict)
-    runs: list[PlannedRun] = field(default_factory=list)
+    own: dict[str, tuple[Reference, float] | SceneError] = field(default_factory=dict, repr=False)
+    runs: list[PlannedRun] = field(default_factory=list, repr=False)
     skipped: dict[str, str] = field(default_factory=dict)
     planning: float = 0.0
 
@@ -123,8 +124,9 @@ def plan(
     Raises SceneError if there is no exact solution and no affordable run converges.
     """
     began, scene = perf_counter(), load(scene)
-    if not (isinstance(misfit, Real) and misfit > 0):
-        raise SceneError("plan", "misfit", misfit, "must be a positive number, as 0.02")
+    if not (isinstance(misfit, Real) and 0 < misfit <= MOST):
+        allowed = f"must be a positive number of at most {MOST}, as 0.02"
+        raise SceneError("plan", "misfit", misfit, allowed)
     found = ranking.finest(able(scene), scene)
     if found is None:
         raise SceneError(scene.where, "", None, "no solver resolves all physics of the scene")

@@ -71,7 +71,9 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
         scene,
         _display(shown, by, [key for key in keys if key != MEMBER], numbers),
         [],
-        [*(points + " " + failed.variant + ": " + failed.message)] if len(failed) else [],
+        [*((points + " " + failed.variant).str.strip() + ": " + failed.message)]
+        if len(failed)
+        else [],
         files,
         facts,
         legend=legend,

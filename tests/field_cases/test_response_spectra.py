@@ -117,6 +117,17 @@ def test_peaks_and_intensities_of_an_acceleration(files):
     assert jw.ppv(ramp, "acceleration").item() == pytest.approx(1.5)
 
 
+def test_the_name_of_a_column_tells_its_quantity(tmp_path):
+    """Stress is no velocity, and a unit that is not read is not taken for SI."""
+    path = tmp_path / "one.csv"
+    path.write_text("time,Acceleration\n0,0\n1,3\n")
+    assert jw.ppv(path).item() == pytest.approx(1.5)
+    for name, words in (("stress", "must be recorded"), ("velocity@4 mm", "must be as velocity_x")):
+        path.write_text(f"time,{name}\n0,0\n1,3\n")
+        with pytest.raises(SceneError, match=words):
+            jw.ppv(path)
+
+
 def test_a_channel_beside_components_is_left_out(tmp_path, caplog):
     """A microphone of a seismograph: the peak is of the vector (3, 4, 12); a line says so."""
     time = np.arange(200) * 1e-3

@@ -43,7 +43,7 @@ BAD = [
     (("picture", SCENE, "--out", "a.gif"), "--out: a.gif: must end in .pdf or .svg or .png"),
     (("explain", "xyz", "--json"), "xyz: is neither a file nor a shipped scene"),
     (("picture", "xyz"), "xyz: is neither a file nor a shipped scene"),
-    (("plan", SCENE, "--misfit", "1"), "--misfit"),
+    (("plan", SCENE, "--misfit", "2"), "plan: misfit = 2.0: must be a positive number of at m"),
     (("picture", "."), ".: has no result of an engine, such as dem.nc"),
     (("picture", "rock-mass/tunnel", "--explode", "0.2"), f"{OF_SPACE} rock-mass/tunnel\n"),
     (("picture", ".", "--explode", "0.2"), f"{OF_SPACE} a folder\n"),
