@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from jointwave.cases.errors import SceneError, UnstableError
+from jointwave.cases.errors import UnstableError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.continuum import simulate
 from jointwave.continuum.plan import plan_of
@@ -74,8 +74,7 @@ def test_critical_step_is_sharp(short, kind):
     ids=["slip", "no tension"],
 )
 def test_slip_and_opening_do_not_lower_it(joints, short):
-    """At 0.999 of the critical step of joints that hold, energy stays what the load has put in,
-    but for a tenth."""
+    """At 0.999 of the critical step of joints that hold, energy is the work but for a tenth."""
     load = {"shape": "sine", "amplitude": 1e5, "period": 1e-3, "direction": [0.6, 0.8, 0.0]}
     changes = {"load": load, "joints": joints, "numerics__continuum__step_fraction": 0.999}
     dt = 0.999 * plan_of(short(**changes), dim=2).critical
@@ -93,11 +92,6 @@ def test_uniform_lumped_linear_bar_is_critical_when_a_wave_crosses_one_element(p
     critical = plan_of(scene, "equivalent").critical
     assert critical == pytest.approx(p.spacing / p.bar_speed, rel=1e-4)
     assert critical <= p.spacing / p.bar_speed * (1 + 1e-12)
-
-
-def test_step_above_the_critical_one_is_refused(pillar):
-    with pytest.raises(SceneError, match=r"continuum.step_fraction = 1.5.*critical step"):
-        simulate(pillar(numerics__continuum__step_fraction=1.5))
 
 
 def of_matrices(stiffness, viscosity=0.0, given=()):

@@ -1,11 +1,12 @@
-"""Peaks, Arias intensity and response spectra against closed forms of known pulses."""
+"""Peaks and response spectra against closed forms of known pulses; for intensities see
+`tests/test_jointwave.py` and `field_cases/test_response_spectra.py`."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from jointwave.cases.errors import SceneError
-from jointwave.compare.readings.ground_motion import arias, ppv, ppv_map, response_spectrum
+from jointwave.compare.readings.ground_motion import ppv, ppv_map, response_spectrum
 
 
 def sine(cycles, dt):
@@ -39,14 +40,6 @@ def test_the_map_is_the_peak_of_every_node_at_its_place():
     assert (found.x.values.tolist(), found.y.values.tolist()) == ([0.0, 2.0], [1.0, 3.0])
     with pytest.raises(SceneError, match=r"record\.fields: is needed"):
         ppv_map(result.drop_vars("field_velocity"))
-
-
-@pytest.mark.parametrize("dt", [0.02, 0.005])
-def test_arias_intensity_of_a_sine(dt):
-    """pi / (2 g) (V omega)^2 T / 2 a cycle, less (omega dt)^2 / 12 of it by straight lines."""
-    exact = np.pi / (2 * 9.81) * (0.2 * 2 * np.pi) ** 2 * 3 / 2
-    lost = 1 - arias(sine(3, dt)).item() / exact
-    assert lost == pytest.approx((2 * np.pi * dt) ** 2 / 12, rel=0.01)
 
 
 def displacement_of_sine(t, omega, damping, speed=0.2, drive=2 * np.pi, stop=4.0):

@@ -53,7 +53,7 @@ def again(found, name, changes):
     return solve(found.chosen.elements.name, scene_of(name, changes | overrides))
 
 
-@pytest.mark.parametrize("target, more", [(0.05, DAMPED), (0.01, {}), (1e-3, {})])
+@pytest.mark.parametrize("target, more", [(0.05, DAMPED), (1e-3, {})])
 def test_the_printed_options_meet_the_misfit_and_so_do_smaller_steps(target, more):
     found = plan(short(more), target)
     assert found.finest.name == "jointed-bar" and not found.finest.settings

@@ -74,7 +74,7 @@ def test_a_point_whose_process_dies_is_lost_and_stops_nobody(of, tmp_path):
     assert [isnan(one["square"]) for one in found] == [n == 2 for n in range(5)]
     assert saved(tmp_path) == [0, 1, 3, 4]
     with pytest.raises(MemoryError, match="its process ended early"):
-        of([2], dies).rows(pool)
+        of([2]).rows(lambda work, points: ((name, None) for name in points))
 
 
 def test_a_damaged_file_is_one_line_that_names_it(of, tmp_path):

@@ -11,7 +11,6 @@ from jointwave.compare.misfit.metrics import misfit, relative_l2
 from jointwave.results.dataset import energy_residual
 
 SOFT = [{"y": 20.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
-DAMPED = [{"y": 20.0, "damping_ratio": 0.03}]
 DOWN = {"direction": [0, 1, 0]}
 SHAKEN = {"shape": "sine", "amplitude": 1.0, "period": 0.02, "quantity": "velocity"}
 RAYLEIGH = {"frequencies": [50.0, 400.0], "ratios": [0.02, 0.03]}
@@ -20,12 +19,10 @@ CHAINS = {
     "strongly damped, soft layer": {"soft_layers": SOFT, "joints__damping_ratio": 0.5},
     "quiet start": {"ends": {"start": "quiet", "end": "fixed"}},
     "matched start": {"ends__start": "matched", "ends__end": "matched"},
-    "Rayleigh damping": {"ends": HELD, "damping__rayleigh": RAYLEIGH},
     "base moved against the axis, with all linear effects": {
         "ends": {"start": "fixed", "end": "fixed"},
         "load": {**SHAKEN, "direction": [0, -1, 0]},
-        "joints__damping_ratio": 0.05,
-        "damping__mass_proportional": 20.0,
+        "damping__rayleigh": RAYLEIGH,
         "prestress": {"normal": 2e6},
         "gravity": DOWN,
     },
@@ -38,10 +35,9 @@ BASE = {**BLOW, "amplitude": 100.0, "quantity": "acceleration"}
 ECCENTRIC = {"load": {**BLOW, "at": [0.1, -0.05]}, "joints__damping_ratio": 0.05}
 UNTURNED = {"motion__rotation": "none", "joints__damping_ratio": None}
 ROWS = {
-    "matched, fixed, mass damping": {"ends": HELD, "damping__mass_proportional": 50.0},
     "shaken base, quiet": UNTURNED | {"ends": {"start": "fixed", "end": "quiet"}, "load": BASE},
     "all linear effects": {
-        "ends": {"start": "quiet", "end": "fixed"},
+        "ends": HELD,
         "soft_layers": LAYER,
         "damping__mass_proportional": 30.0,
         "gravity": {"direction": [0.6, 0.8, 0.0], "static": False},
@@ -111,8 +107,7 @@ def test_ledger_closes_to_round_off(fixture, changes, request):
     """Below 1e-10 of the work, in the form of the energy that leapfrog conserves at any step.
 
     Local damping is not linear in the motion, but books what it takes all the same. Friction books
-    the mean of the spring force before and after the step, which closes as well.
-    """
+    the mean of the spring force before and after the step, which closes as well."""
     if "prestress" in changes:  # no other test has its kernel
         request.getfixturevalue("plain")
     result = dem.simulate(request.getfixturevalue(fixture)(**changes))
@@ -171,19 +166,17 @@ def test_a_loaded_face(struck, direction, quantity):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"joints__damping_ratio": 0.02, "soft_layers": DAMPED, "ends__end": "quiet"},
-        {"joints__damping_ratio": 0.02, "soft_layers": SOFT},
         {"soft_layers": [{"y": 20.0, "tension": False}], "joints__tension": True},
         {"time__duration": 0.035},
     ],
-    ids=["quiet end", "soft layer", "one joint only", "undamped"],
+    ids=["one joint only", "undamped"],
 )
 def test_no_tension_chain_at_the_default_step(pillar, changes):
-    """Opening joints make the force jump; still below 0.2 %, peaks within 0.1 %.
+    """Opening joints make the force jump; still below 0.2 %, peaks within 0.1 %; damped ones are
+    those of the shipped figures 9 and 10.
 
     Undamped, only until the reflected pulse has passed: after it the separated blocks rattle
-    freely, and where they collide depends on the step.
-    """
+    freely, and where they collide depends on the step."""
     short = {"pillar__length": 30.0, "time__duration": 0.08}
     scene = pillar(**{"joints__tension": False, **short, **changes})
     result, exact = dem.simulate(scene), row_of_blocks.solve(scene)

@@ -66,7 +66,6 @@ def test_a_load_turns_its_lever_with_the_face_that_it_acts_on(pillar):
     lever of the start, 18 % further."""
     scene = pillar(
         pillar__length=1.0,
-        joints__damping_ratio=0.5,
         load={"shape": "triangle", "amplitude": 1e4, "rise": 0.2, "decay": 1e3}
         | {"direction": [1.0, 0.0, 0.0], "at": [0.1, 0.0]},
         motion__rotation="finite",
