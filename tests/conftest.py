@@ -251,8 +251,7 @@ def one_joint():
 
 
 def _resident():
-    """Return the bytes of memory that this process has now, or has had where Linux is not there to
-    tell."""
+    """Return the bytes of memory that this process has now, or has had where Linux cannot tell."""
     if (found := Path("/proc/self/statm")).is_file():
         return int(found.read_text().split()[1]) * getpagesize()
     return getrusage(RUSAGE_SELF).ru_maxrss * 1024
@@ -354,8 +353,7 @@ def mpiexec():
     without what MPI left there, or mpiexec would take itself for a part of it.
 
     They spin while they wait for one another. What else runs goes first: at equal priority each
-    wait of theirs takes a time slice of it, and a test ten times as long.
-    """
+    wait of theirs takes a time slice of it, and a test ten times as long."""
     launcher = shutil.which("mpiexec")
     if launcher is None:
         pytest.skip("no mpiexec here")

@@ -48,8 +48,7 @@ for name, (engine, changes) in json.loads(sys.argv[2]).items():
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    """Return the results of all runs of this and of another process, whose hashes are seeded
-    differently."""
+    """Return the results of all runs of this and of another process, of another hash seed."""
     runs = {name: (engine, SHORT | keys) for name, (engine, keys) in RUNS.items()}
     folder, here = tmp_path_factory.mktemp("runs"), tmp_path_factory.mktemp("here")
     seed = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"

@@ -105,8 +105,7 @@ def test_a_page_names_only_what_there_is(page, folder, tools):
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_a_page_is_finished(page, tools):
     """No words of the unfinished; braces of formulas match, since one too few is no error to the
-    converter; every mark of a generated part makes one, which `make docs` writes into the
-    reference."""
+    converter; every mark of a generated part makes one, written by `make docs`."""
     text, hooks = TEXTS[page], tools("hooks")
     assert not [word for word in FORBIDDEN if word in text]
     for shown, inline in re.findall(r"\$\$(.+?)\$\$|\$([^$\n]+)\$", BLOCK.sub("", text), re.DOTALL):

@@ -150,8 +150,7 @@ def acceptable(inside, confidence=0.95, chance=1e-4):
 
 def test_intervals_hold_the_true_stiffness_as_often_as_they_say(calibration):
     """Of 50 measurements 40 to 50, from the binomial distribution; intervals of half the reach
-    would hold it in 34, and the same bound refuses them. Fits start at the truth, near which each
-    ends."""
+    would hold it in 34, and the same bound refuses them. Fits start at the truth."""
     truth = np.log10(calibration["STIFFNESS"]), calibration["STRENGTH"]
     measured = map(calibration["measure"], range(MEASUREMENTS))
     fits = [calibration["fit"](one, start=truth) for one in measured]

@@ -1,7 +1,6 @@
 """Other codes on the same pillar: what they are given, what is read, and that they solve it.
 
-A peer that is not installed (`make bench-peers` does) is skipped with the reason.
-"""
+A peer that is not installed (`make bench-peers` does) is skipped with the reason."""
 
 import sys
 from pathlib import Path

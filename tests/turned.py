@@ -6,8 +6,7 @@ from jointwave.cases import load_tables
 
 
 def turned(scene, matrix):
-    """Return a scene between quiet sides whose places and vectors a rotation or a reflection [2, 2]
-    maps."""
+    """Return a scene between quiet sides mapped by a rotation or reflection [2, 2]."""
     flips, angle = np.linalg.det(matrix), np.degrees(np.arctan(matrix[1, 0] / matrix[0, 0]))
 
     def place(points):

@@ -24,8 +24,7 @@ def own_rates(tmp_path_factory, monkeypatch):
 
 @pytest.fixture(scope="module")
 def browser():
-    """Start a headless Chromium for a file: it holds some hundred megabytes. `make test` installs
-    it on Debian."""
+    """Start a headless Chromium for a file: it takes 200 MB. `make test` installs it."""
     path = shutil.which("chromium") or shutil.which("google-chrome")
     if path is None:
         pytest.skip("no chromium here: the page is not opened")

@@ -30,8 +30,7 @@ def drawn(
     return the path of the file.
 
     doubled : neighbours share no vertex. names : of the joints' groups; untagged : numbers of the
-    joints of which only the lower side is tagged.
-    """
+    joints of which only the lower side is tagged."""
     with gmsh_session() as gmsh:
         dim, model = DIMENSION[kind], gmsh.model
         cuts = [(0.0, 0.0), *joints, (length, length)]

@@ -1,5 +1,4 @@
-"""Waves in rock masses in the plane, of one rock and of several, against exact solutions of the
-same scenes."""
+"""Waves in rock masses in the plane, of one rock and of several, against their exact solutions."""
 
 import numpy as np
 import pytest

@@ -2,8 +2,7 @@
 
 Slabs of 1 m and 1000 kg/m2 over 4 m2, E_eq = 2.5 MPa and nu = 1/4: K'_n = 2.5e6 Pa/m, K'_s = 1e6
 Pa/m, a bar speed of 50 m/s and so Z = 5e4 Pa s/m. A step load of 1000 Pa and steps of 0.01 s: one
-adds 1e-5 m/s for each Pa, and the mean of the load over the first is 500 Pa.
-"""
+adds 1e-5 m/s for each Pa, and the mean of the load over the first is 500 Pa."""
 
 from math import sqrt
 

@@ -141,8 +141,7 @@ def test_slip_and_opening_do_not_raise_it(row, joints):
 def test_local_damping_lowers_it(row):
     """By sqrt(1 + alpha): a force that turns a velocity round is 1 + alpha times as large.
 
-    Two per cent above, the alternating mode grows until nothing is finite.
-    """
+    Two per cent above, the alternating mode grows until nothing is finite."""
     damped = {"damping__local": 0.5, "time__duration": 1.0}
     known = critical(row(**damped))
     assert known == pytest.approx(critical(row()) / np.sqrt(1.5), rel=1e-9)

@@ -27,8 +27,7 @@ NEVER = 1 << 40
 def blocks_of(turned=None, dashpots=0.0, held=None, **strengths):
     """Return the model of 2 x 3 x 2 boxes and the places of their centroids, all of them turned.
 
-    held : matrix of dashpots of each block; none by default, but one kernel serves both.
-    """
+    held : matrix of dashpots of each block; none by default, but one kernel serves both."""
     turned = Rotation.identity() if turned is None else turned
     places = np.stack(np.unravel_index(np.arange(12), COUNT), 1) * SIDES
     numbers = np.arange(12).reshape(COUNT)

@@ -53,8 +53,7 @@ def test_fragments_share_the_whole_pillar_and_the_impulse_of_the_load(changes, m
 
 def test_break_time_is_when_a_joint_carries_its_last_tension():
     """Each broken joint is pulled up to its break time and never after; none before the exact
-    chain has reached its strength anywhere.
-    """
+    chain has reached its strength anywhere."""
     times = dem.simulate(spalled()).break_time
     broken = np.isfinite(times.values)
     scene = spalled(**{"record.stress": times.joint_y.values[broken].tolist()})
@@ -70,8 +69,7 @@ def test_break_time_is_when_a_joint_carries_its_last_tension():
 def test_fragments_in_space_share_the_impulse_along_its_direction():
     """An oblique pull tears the row; what flies off has the load's impulse, component by component.
 
-    The sections slide freely across each other, so only the sum is known beforehand.
-    """
+    The sections slide freely across each other, so only the sum is known beforehand."""
     along = [0.28, 0.96, 0.0]
     scene = spalled(**{"load.direction": along, "motion.rotation": "none"})
     pieces = json.loads(dem.simulate(scene).attrs["fragments"])

@@ -2,8 +2,7 @@
 equations.
 
 A Bloch wave of the infinite lattice with frequency omega, and a mode of bricks, step on at Omega,
-sin(Omega dt / 2) = omega dt / 2, so that the kernel is held to round-off in all its branches.
-"""
+sin(Omega dt / 2) = omega dt / 2, so that the kernel is held to round-off in all its branches."""
 
 import numpy as np
 import pytest
@@ -56,8 +55,7 @@ def steps_on(system, motion, steps):
 @pytest.mark.parametrize("rule", [{}, POINTS], ids=["faces", "points"])
 @pytest.mark.parametrize("waves", [[1, 0], [2, 3], [1, 0, 0], [1, 2, 1]])
 def test_bloch_waves_step_on_as_leapfrog_has_them(waves, rule):
-    """All branches of a lattice keep their form over 5,000 steps; joints that can fail have
-    points."""
+    """All branches of a lattice keep their form over 5,000 steps, with points too."""
     dim = len(waves)
     laws = [law_of(str(k), STIFFNESS, spacing=SIDE, **rule) for k in range(dim)]
     system = system_of([SIDE * COUNT[dim]] * dim, laws, ACROSS[:dim])

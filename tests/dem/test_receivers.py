@@ -197,8 +197,7 @@ def test_a_block_that_a_force_turns_has_its_inertia_in_its_mean_stress(depth):
 
 @DIMENSIONS
 def test_what_acts_from_outside_counts_as_contacts_do(dim):
-    """The boundary as walls, or as sums of arm times force; and blocks that do not rotate have no
-    moments to read."""
+    """The boundary as walls, or as sums of arm times force; without moments if none rotates."""
     found = blocks(dim)
     faces, centroid, second = all_faces(found)
     contact = samples_of(faces, centroid, second, *field(dim))

@@ -115,8 +115,7 @@ def in_plane(space, spaced):
 
 @pytest.mark.parametrize("spaced", [False, True], ids=["slip", "rock"])
 def test_a_plane_scene_between_rollers_equals_the_plane(spaced):
-    """Slip, opening, the ledger and the rock's share of compliance included: no block turns out of
-    the plane."""
+    """Slip, opening, the ledger and the rock's share of compliance included: no block tilts."""
     flat, deep = simulate(in_plane(False, spaced)), simulate(in_plane(True, spaced))
     scale = np.abs(flat.velocity).max().item()
     assert deep.attrs["blocks"] == flat.attrs["blocks"] > 6

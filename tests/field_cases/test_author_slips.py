@@ -2,8 +2,7 @@
 
 Users of several programs gave 0.349 for 20 degrees, 0.6 for an angle of friction, 5 for a damping
 ratio, 0.5 for a cohesion in MPa. Values and their other readings are converted here by hand; right
-values beside them are silent.
-"""
+values beside them are silent."""
 
 import tomllib
 

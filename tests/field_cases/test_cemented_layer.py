@@ -2,8 +2,7 @@
 
 Two of three blocks are pulled off a wall by the end stress -p from t = 0 on. The joint between them
 is cemented, that to the third block carries no tension: this block rests, and the other two fall
-off at p A / 2 m. At rest relative to each other, the joint between them pulls with half of p.
-"""
+off at p A / 2 m. At rest relative to each other, the joint between them pulls with half of p."""
 
 import pytest
 

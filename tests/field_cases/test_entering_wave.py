@@ -2,8 +2,7 @@
 
 A load on a start that absorbs enters at half its amplitude, since the dashpot takes the other half;
 users found their waves twice too weak. Peak stress, peak velocity and energy are those of a plane
-wave, sigma = rho c v and sigma^2 / (rho c) integrated over time, by both engines.
-"""
+wave, sigma = rho c v and sigma^2 / (rho c) integrated over time, by both engines."""
 
 import numpy as np
 import pytest

@@ -2,8 +2,7 @@
 
 The exact bar with joints is the referee: rigid blocks tend to it with the square of their size
 when the end block is joined to the wall by half a block of its rock. With half a joint there, the
-frequency of 20 blocks was 2.4 % off, and its distance fell with the size alone.
-"""
+frequency of 20 blocks was 2.4 % off, and its distance fell with the size alone."""
 
 import numpy as np
 import pytest
@@ -71,8 +70,7 @@ def test_static_deflection_on_a_wall(solver, across, request):
     across it without rotation.
 
     Blocks have their weight at their centres, which adds rho g d^2 / 8 over the modulus to the
-    deflection of the first centre, 1e-4 of it.
-    """
+    deflection of the first centre, 1e-4 of it."""
     changes = {
         "load.amplitude": 0.0, "motion.rotation": "none", "time.duration": 0.01,
         "gravity": {"direction": [1.0, 0.0, 0.0] if across else [0.0, 1.0, 0.0]},

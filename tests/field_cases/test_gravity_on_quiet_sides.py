@@ -5,8 +5,7 @@ a scene of linear joints is the sum of that state and of the scene without gravi
 acts suddenly leaves a quiet base where it was: it bears R = M g from the start, so that what its
 dashpots take is the momentum of the column, zero at first and in the end, and its velocity has no
 integral. Until a wave returns from the top its stress is (R + Z g t) / 2: the up-going wave
-Z (v + g t) meets R - Z v.
-"""
+Z (v + g t) meets R - Z v."""
 
 import numpy as np
 import pytest
@@ -86,8 +85,7 @@ def test_static_state_stays_and_adds_to_a_wave(scene, solver):
 def test_sudden_gravity_does_not_sink(scene, solver):
     """The base is back where it was; what the deepest receiver has settled is half a block's share.
 
-    The sides of the rock are free: quiet ones would hold it back by their own dashpots.
-    """
+    The sides of the rock are free: quiet ones would hold it back by their own dashpots."""
     changes = {**quiet(scene), "gravity.static": False, "time.duration": 0.3}
     changes |= {"boundaries": {"bottom": "quiet"}} if "loads" in scene else {}
     fallen = run(scene, solver, **changes)

@@ -2,8 +2,7 @@
 
 A user knows the stiffness of his joints, where they are, and the intact rock. Behind each joint the
 wave is that before it times |T| = 2 kappa / sqrt(4 kappa^2 + 1), kappa = K_n / (Z omega), as long
-as what the joints reflect has not come back (Schoenberg, JASA 68, 1980).
-"""
+as what the joints reflect has not come back (Schoenberg, JASA 68, 1980)."""
 
 import tomllib
 from math import pi, sqrt

@@ -13,8 +13,7 @@ acts across s is their assumption. Springs in shear a tenth as stiff as those ac
 leave little of it; equal ones lock some in, and the wedge then stands 2 % beyond.
 
 A prism topples where tan(lean) h / 2 exceeds the distance from the centroid of its face to the edge
-in that direction (chapter 9). Corners of faces are contact points, so blocks know the edge.
-"""
+in that direction (chapter 9). Corners of faces are contact points, so blocks know the edge."""
 
 import numpy as np
 import pytest

@@ -2,8 +2,7 @@
 
 Joints that carry no tension give off their shear energy as they open: a ledger that forgets it is
 open by 1 to 13 % at any step, and one that is open says so. A softening joint pulled apart takes
-its fracture energy once (exaDEM's traction test counts it twice): G_f times its area.
-"""
+its fracture energy once (exaDEM's traction test counts it twice): G_f times its area."""
 
 import numpy as np
 import pytest
@@ -41,8 +40,7 @@ def rock(law, rng, fraction):
 def test_what_is_open_of_a_ledger_falls_faster_than_the_step(engine, law):
     """The work of a step is of third order in it where a joint does not open in that step, and of
     second where it does. Each point opens a few times a run whatever the step: what is left falls
-    with its square, by 64 here, but for which of the few openings cancel; of first order by 8.
-    """
+    with its square, by 64 here, but for which of the few openings cancel; of first order by 8."""
     left = []
     for fraction in (0.5, 0.0625):
         results = []
@@ -66,8 +64,7 @@ def test_a_ledger_that_is_open_says_by_how_much():
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_ledger_of_what_stays_at_rest_is_closed(engine):
-    """A leaning stack of blocks about to topple: 4 J of its joints, and rock of 5e10 Pa that turns
-    with them."""
+    """A leaning stack of blocks about to topple: 4 J of its joints, and rock that turns along."""
     law = {"normal_stiffness": 1e12, "shear_stiffness": 1e12, "friction_angle": 45.0}
     lean = np.array([0.97 / 5, -1.0]) / np.hypot(0.97 / 5, 1.0)
     stack = mass(

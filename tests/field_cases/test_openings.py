@@ -2,8 +2,7 @@
 the order in which points are listed says nothing about it.
 
 `compare` said of a tunnel in two joint sets, whose peak velocities agree to some per cent, that it
-was "720 % far off", by one stress component at its wall.
-"""
+was "720 % far off", by one stress component at its wall."""
 
 import json
 
@@ -106,8 +105,7 @@ def test_what_goes_more_than_half_around_is_said():
 @pytest.mark.parametrize("amplitude", [0.0, 1e6], ids=["no load", "a whole face"])
 @pytest.mark.parametrize("interval", [1e-5, 2e-3], ids=["many samples", "two samples"])
 def test_nothing_is_divided_by_nothing(amplitude, interval, jointwave, tmp_path, in_toml):
-    """At the edge of what makes sense nothing of numpy's is said: tests turn its warnings into
-    errors."""
+    """At the edge of what makes sense nothing of numpy's is said: warnings are errors."""
     pushed = {"kind": "pressure", "opening": 0, "between": [[2.0, 2.0], [4.0, 2.0]]}
     hole = [[2, 2], [4, 2], [4, 4], [2, 4]]
     tables = mass(

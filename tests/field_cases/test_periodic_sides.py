@@ -2,8 +2,7 @@
 
 The two-layer column is that of SPECFEM3D's issues 1772 and 1773 and SPECFEM2D's 1240: 128 m of rock
 with a shear speed of 224 m/s over 448 m/s, of equal density, struck from a quiet base below 256 m
-of the lower rock.
-"""
+of the lower rock."""
 
 import numpy as np
 import pytest

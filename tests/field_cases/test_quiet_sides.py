@@ -1,8 +1,7 @@
 """Quiet sides beside joints that are not linear, beside a free top and beside layers.
 
 A joint whose strength is never reached, and a wave that is hardly turned (Miller 1978, 3DEC's
-verification, at any angle): all sides receive one field, so that neither changes anything.
-"""
+verification, at any angle): all sides receive one field, so that neither changes anything."""
 
 import numpy as np
 import pytest
@@ -109,8 +108,7 @@ def turned_domain(R, digits, kind, fails):
 @pytest.mark.parametrize("kind", ["P", "S"])
 def test_a_free_top_sends_an_oblique_wave_back(engine, kind):
     """20 degrees in rock without joints: coefficients of a free face of Aki & Richards (2002),
-    equations (5.27) to (5.31); the motion of the top is the sum of three waves, and bears no
-    traction."""
+    equations (5.27) to (5.31); the top moves by the sum of three waves, without traction."""
     a, b = P_SPEED, S_SPEED
     p = np.sin(np.radians(20)) / (a if kind == "P" else b)
     xi, eta = np.sqrt(1 / a**2 - p**2), np.sqrt(1 / b**2 - p**2)

@@ -2,8 +2,7 @@
 
 Velocity, displacement and the stress along a joint jump across it: every solver reads the mean of
 both sides, within 1e-9 of the rock's size, and a warning says so. Traction does not jump. A force
-acts as a receiver at its place reads.
-"""
+acts as a receiver at its place reads."""
 
 import numpy as np
 import pytest

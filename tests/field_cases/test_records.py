@@ -2,8 +2,7 @@
 
 Loggers and spreadsheets write semicolons, decimal commas, rows of units and lines above; a SAC file
 had DELTA = 40, its rate, and B undefined (obspy 80), another 450,000 samples (obspy 363). What is
-read is what the file says, and what is not read is refused with its cause.
-"""
+read is what the file says, and what is not read is refused with its cause."""
 
 import io
 import struct

@@ -1,7 +1,6 @@
 """Spectra of coarse records (groundmotion-processing 532) are those of the same straight lines.
 
-Sought at samples alone, a quarter is lost where the period is the interval of 20 Hz.
-"""
+Sought at samples alone, a quarter is lost where the period is the interval of 20 Hz."""
 
 import numpy as np
 import obspy

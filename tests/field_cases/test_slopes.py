@@ -2,8 +2,7 @@
 
 Users of Yade (answers 4102, 4142), MuJoCo (3328), newton (943), cb-geo mpm (703, PR 3) and MOOSE
 (18233) ask for these: a block stays for ever below its friction angle, what damps motion has no
-part in a state without any, and nothing moves in it until something acts.
-"""
+part in a state without any, and nothing moves in it until something acts."""
 
 from math import cos, radians, sin, tan
 

@@ -2,8 +2,7 @@
 
 Contacts and areas are those of the initial state: what moves beyond 2 % of the smaller block is not
 what the result would show, and a run stops with exit code 3. A wedge that nothing holds falls
-g t^2 / 2, so that it is 2 % of sqrt(A) away at t = sqrt(0.04 sqrt(A) / g).
-"""
+g t^2 / 2, so that it is 2 % of sqrt(A) away at t = sqrt(0.04 sqrt(A) / g)."""
 
 import numpy as np
 import pytest

@@ -1,8 +1,7 @@
 """A fault weakened by a step of stress (SeisSol 688, TPV5): the right time after which a point has
 slipped by D is that of two half-spaces; a row of blocks, behind whose front a step overshoots by a
 quarter, slips too early, and says which rise it takes. `compare` once judged the fault by rigid
-blocks although an exact solution of its joint exists.
-"""
+blocks although an exact solution of its joint exists."""
 
 import re
 
@@ -19,8 +18,7 @@ NORMAL, STEP, DISTANCE = 120e6, 81.6e6, 0.40  # Pa, Pa of the wave, m
 
 
 def fault(rise, **rock):
-    """Return a fault between blocks that a wave rising in this time (s) slips, 0: a step; rock :
-    more keys."""
+    """Return a fault between blocks that a wave rising in this time (s) slips, 0: a step."""
     angles = np.degrees(np.arctan([0.677, 0.525])).tolist()
     load = {"amplitude": STEP, "quantity": "incident-stress", "direction": [1.0, 0.0, 0.0]}
     if rise:
@@ -70,8 +68,7 @@ def test_a_step_in_a_rock_mass_warns_where_its_joints_can_fail(law, one_joint):
 @pytest.mark.parametrize("engine", ("dem", "continuum-equivalent"))
 def test_a_fault_weakens_in_time_under_a_load_that_rises(engine):
     """Within 2 % of the exact time since the wave came, by a rise over 80 blocks, which
-    overshoots by half as much as one over 40; by a step it is a fifth too early and more, whatever
-    the blocks."""
+    overshoots by half as much as one over 40; by a step it is a fifth too early and more."""
     arrival = 800.0 / SPEED
     for rise in (0.24, 0):
         scene = jw.load(fault(rise))

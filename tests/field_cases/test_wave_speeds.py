@@ -3,8 +3,7 @@ step of 1 kPa on top that rises in 2.5 ms (Kratos Multiphysics, pull request 120
 
 A bar with free sides has sqrt(E / rho) = 162.65 m/s, a plate in plane stress between fixed sides
 170.50, confined rock 188.71. The sides of a pillar are free, and E is the modulus that rigid blocks
-get (Guo & Li 2002, eq. 4 to 6), so that all engines are the bar, in every dimension.
-"""
+get (Guo & Li 2002, eq. 4 to 6), so that all engines are the bar, in every dimension."""
 
 import json
 

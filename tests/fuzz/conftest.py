@@ -1,7 +1,6 @@
 """What the tests of bad input share: targets that read it, under a bound on memory.
 
-`make fuzz` sets FUZZ: so many times the inputs, others in each run.
-"""
+`make fuzz` sets FUZZ: so many times the inputs, others in each run."""
 
 import os
 from pathlib import Path

@@ -3,8 +3,7 @@
 A target returns "read" or "refused", and raises whatever no user should see: any error but
 SceneError and UnstableError, a message of several lines, or a message that is too long to read. It
 makes every check that a command makes before it solves something, and solves only tiny scenes of
-the paper's kind, whose kernels are compiled already.
-"""
+the paper's kind, whose kernels are compiled already."""
 
 import io
 import os

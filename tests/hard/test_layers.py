@@ -131,8 +131,7 @@ def test_prestress_of_just_the_largest_tension_leaves_every_joint_closed(engine,
 
 @pytest.mark.parametrize(("engine", "scheme"), marked(JOINTED, SLOW[1:]))
 def test_gaps_of_1e_40_m_open_and_close_like_large_ones(engine, scheme):
-    """Tension-free joints have no scale: a load smaller by a power of two gives the same result in
-    every digit."""
+    """Tension-free joints have no scale: a load smaller by a power of two gives the same digits."""
     run, small = HardRun(engine, scheme, LOOSE), 2.0**-99
     one, other = (run.run(load__amplitude=a)["stress"].values for a in (1.0, small))
     assert np.array_equal(other / small, one)

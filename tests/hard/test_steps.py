@@ -19,8 +19,7 @@ def fastest_at_first(run):
     """Return the speed (m/s) of the lightest node after the impulse of the load's magnitude.
 
     A block has its whole mass on its one freedom. GLL elements of order p give 1 / (p (p + 1)) of
-    theirs to a node at their end.
-    """
+    theirs to a node at their end."""
     p, order = run.properties, run.scene.numerics.continuum.order
     times = sample_times(run.scene)
     impulse = p.area * trapezoid(np.abs(load_history(run.scene).value(times)), times)

@@ -1,5 +1,4 @@
-"""The balance of energy of a point, and what has no preferred direction: every engine relies on
-both."""
+"""The balance of energy of a point, and that no direction is preferred, as engines rely on."""
 
 from itertools import pairwise
 

@@ -123,8 +123,7 @@ def test_cyclic_slip_takes_four_tau_times_the_slide(stiffness, tau, ratio):
     """Between +s and -s a Coulomb joint takes 4 tau (s - tau / K_s) in a cycle, in one step a leg.
 
     The spring force is linear up to the strength and constant from there, so the energy taken is
-    the end-of-step traction times the slide: exact in a single step.
-    """
+    the end-of-step traction times the slide: exact in a single step."""
     one = Law(9e9, shear_stiffness=1e9 * stiffness, cohesion=1e6 * tau, friction=0.0)
     tau, s = one.cohesion, ratio * one.cohesion / one.shear_stiffness
     taken, h = [], Point()

@@ -1,7 +1,6 @@
 """Friction that depends on rate and state, against what its two equations say in closed form.
 
-1 MPa on the joint; mu_0 = 0.6 at 1e-6 m/s, a = 0.01, b = 0.015, D_c = 0.1 mm.
-"""
+1 MPa on the joint; mu_0 = 0.6 at 1e-6 m/s, a = 0.01, b = 0.015, D_c = 0.1 mm."""
 
 from math import exp, log, log1p
 
@@ -86,8 +85,7 @@ def test_the_critical_stiffness_of_steady_slip(share):
     exp(p V t / D_c), a p^2 + (a - b + k D_c / s) p + k D_c / s = 0, so that it is stable above
     k_c = s (b - a) / D_c (Ruina 1983), and at k_c oscillates with p^2 = -k_c D_c / (s a).
 
-    Ten units of time, from a state 0.1 % too old: to 1 % of that, by backward differences of first
-    order."""
+    Ten units of time, from a state 0.1 % too old: to 1 % of that, to first order."""
     a, b, k = 0.01, 0.015, share * 0.005
     one = JOINT._replace(shear_stiffness=k * PRESSURE / LENGTH)
     h = steady(one, RATE)

@@ -147,8 +147,7 @@ def test_tangent_is_the_derivative(dashpots, opens, shears, data):
     Closed: over (s_m + sigma) / k the hyperbola's slope k doubles, and its third derivative is
     below 24 k (k / (s_m + sigma))^2, rock beside it or not: steps of e of that truncate 4 e^2 k.
     Shear: the direction of T* turns over |T*| / a, a = K_s + r C_s; its third derivative is below
-    9 (a / |T*|)^3, so steps of e |T*| / a truncate 9 / 6 e^2 a, and round-off adds as before.
-    """
+    9 (a / |T*|)^3, so steps of e |T*| / a truncate 9 / 6 e^2 a, and round-off adds as before."""
     law, history, r = data.draw(one_law(dashpots, opens, shears))
     step = Step(law, history, r, data.draw(states))
     (gap, x, z), (gap_rate, rate_x, rate_z) = step.at, step.rate

@@ -1,8 +1,7 @@
 """The law in another form: each part as the papers have it, one equation after the other.
 
 Every part of a law is a number or None. Units and signs are those of `joints.law`: Pa, m, s;
-traction compression positive, gap positive when open, shear traction on the right block.
-"""
+traction compression positive, gap positive when open, shear traction on the right block."""
 
 from itertools import product
 from math import exp, expm1, hypot, inf, log
@@ -23,8 +22,7 @@ def twin_strength_left(law, opening):
     """Return the tension (Pa) that can still be reached: linear softening.
 
     Full up to w_0 = s_t / K, falling linearly to nothing at w_c: Hillerborg, Modeer & Petersson
-    (1976); Camacho & Ortiz (1996).
-    """
+    (1976); Camacho & Ortiz (1996)."""
     if law.tensile_strength is None:
         return inf
     first = law.tensile_strength / law.normal_stiffness
@@ -52,8 +50,7 @@ def twin_holds(law, gap, opening):
 def twin_closure_traction(law, closure):
     """Return sigma (Pa) where D = d + c sigma and sigma = k_ni d / (1 - d / d_m), by its root.
 
-    Bandis, Lumsden & Barton (1983). A millionth of 1 / k_ni is in c whatever the rock.
-    """
+    Bandis, Lumsden & Barton (1983). A millionth of 1 / k_ni is in c whatever the rock."""
     own = 1 / law.normal_stiffness - (law.rock_compliance or 0.0)
     c, k = (law.rock_compliance or 0.0) + 1e-6 * own, 1 / (own * (1 - 1e-6))
 
@@ -85,8 +82,7 @@ def twin_normal_traction(law, gap, gap_rate, opening=None):
     An open joint that softened has its secant stiffness, and a dashpot less by the same factor.
     A joint that does not carry tension carries nothing when open, and never pulls: Guo & Li
     (2002), equation (10); any other never pulls by more than the strength it has left. One with a
-    maximum closure stiffens as it closes.
-    """
+    maximum closure stiffens as it closes."""
     stiffness, viscosity = law.normal_stiffness, law.normal_viscosity or 0.0
     if gap > 0:
         if not twin_holds(law, gap, opening):
@@ -115,8 +111,7 @@ def twin_shear_strength(law, t_n, gap, opening=None, cohesion=None, path=0.0):
     """Return what |T| cannot exceed: |T| <= c + t_n tan(phi), Guo & Li (2002), equation (3).
 
     Cohesion is lost in proportion to the tensile strength, unless it stands for no limit. A joint
-    that does not hold has none; one without cohesion and friction that holds is unlimited.
-    """
+    that does not hold has none; one without cohesion and friction that holds is unlimited."""
     if not twin_holds(law, gap, opening):
         return 0.0
     if law.cohesion is None and law.friction is None:
@@ -161,8 +156,7 @@ def twin_shear_return(law, ex, ez, ex_old, ez_old, rate_x, rate_z, tau, dt):
 
     What exceeds the strength is scaled back along its direction. The elastic slip is then where
     spring and dashpot carry that traction: e = (e* + h e_old) / (1 + h), e* = -T / K_s and
-    h = C_s / (K_s dt).
-    """
+    h = C_s / (K_s dt)."""
     t_x, t_z = twin_shear_traction(law, ex, ez, rate_x, rate_z)
     if hypot(t_x, t_z) <= tau:
         return t_x, t_z, ex, ez, False
@@ -178,8 +172,7 @@ def twin_rate_and_state(law, t_n, cohesion, state, size, dt):
     """Return the strength (Pa) and ln(theta / theta_0) after a step: where spring and dashpot carry
     what friction does at the rate of the slide, in the state that follows from a constant rate.
 
-    Dieterich (1979), Ruina (1983); mu = a asinh(e^E), Rice & Ben-Zion (1996).
-    """
+    Dieterich (1979), Ruina (1983); mu = a asinh(e^E), Rice & Ben-Zion (1996)."""
     a, b, length = law.direct_effect, law.evolution_effect, law.critical_slip_distance
     begun = law.initial_state
     theta, stiffness = begun * exp(state), law.shear_stiffness + (law.shear_viscosity or 0.0) / dt
@@ -216,8 +209,7 @@ def twin_rate_and_state(law, t_n, cohesion, state, size, dt):
 def twin_traction(law, gap, gap_rate, slip, slip_rate, dt, history):
     """Return (t_n, t_x, t_z, history) after a step: the normal part, then shear under it.
 
-    The first slip of a point leaves no more than the residual cohesion.
-    """
+    The first slip of a point leaves no more than the residual cohesion."""
     before = twin_lift(law, history.path)
     opening, cohesion = max(history.opening, gap - before), history.cohesion
 
@@ -443,8 +435,7 @@ def test_rate_and_state_equal_their_twin(dashpots, opens, shears, data):
 def test_unlike_joints_behave_as_if_alone(data):
     """In an array of laws every joint carries what it carries by itself, to the last bit.
 
-    Where a joint lacks a strength that others have, an unlimited one stands in.
-    """
+    Where a joint lacks a strength that others have, an unlimited one stands in."""
     unlike = [("ties", ""), ("no tension", "cf"), ("softening", ""), ("closes between rock", "cf")]
     unlike += [("softening", shears) for shears in ("cfr", "cfdw", "cfi")]
     alone = [data.draw(one_law("dashpots", *one)) for one in unlike]

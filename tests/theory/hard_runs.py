@@ -1,8 +1,7 @@
 """Runs of hard cases on any engine by any scheme, and the largest error that each may have.
 
 Near a critical step, beside stiff joints or at a resonance an unstable scheme may be wrong but
-finite. Every such run is therefore compared with the error that a stable one can have.
-"""
+finite. Every such run is therefore compared with the error that a stable one can have."""
 
 from functools import cached_property
 from math import pi, sqrt

@@ -1,8 +1,7 @@
 """What each shipped scene holds beside its pairs of [expect], of the results that those have made.
 
 The bounds are those that the project promises at the default numerics: the engines' distance from
-the exact solution of the model that they discretise, and the closing of their energy ledger.
-"""
+the exact solution of the model that they discretise, and the closing of their energy ledger."""
 
 import numpy as np
 
@@ -29,8 +28,7 @@ FAILS = {"slip", "softening", "no tension", "closure"}  # effects by which a sce
 class WholeItem(PairItem):
     """All variants of a shipped file on every engine and model that applies.
 
-    release : called when its results are no longer needed.
-    """
+    release : called when its results are no longer needed."""
 
     def __init__(self, *, release, **kwargs):
         super().__init__(**kwargs)

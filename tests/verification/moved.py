@@ -25,8 +25,7 @@ END = 1e-3  # s, 0.6 of a period
 class Moved(NamedTuple):
     """A body that the force g'' inertia + g elastic (N) on its freedoms moves as g(t) U(x).
 
-    at, x, volume : quadrature points in all cells, their places (m) and volumes (m2 or m3).
-    """
+    at, x, volume : quadrature points in all cells, their places (m) and volumes (m2 or m3)."""
 
     body: Body
     motion: Manufactured

@@ -1,8 +1,7 @@
 """Standing waves of the square column and of the strip, by the assembled operators.
 
 Where both end faces are mirrors, the modes are exactly those of the infinite column of wave number
-pi / L: no end effect is left.
-"""
+pi / L: no end effect is left."""
 
 import numpy as np
 import pytest
@@ -68,8 +67,7 @@ def frequency(body, mirrored, near, shape):
 def test_long_waves_are_slowed_as_love_and_rayleigh_say(rock, dim, poisson):
     """c falls short of sqrt(E/rho) by nu^2 k^2 r_p^2 / 2, within 1 % of that at k a = 0.2, and
     within 0.1 % once its term in k^4 is extrapolated away. What is left is the term in k^6, some
-    1e-4; elements of the fourth order, four to half a wave, err by 1e-10 of c, 1e-6 of the
-    deviation."""
+    1e-4; elements of the fourth order, four to half a wave, err by 1e-10 of c."""
     bar, found = np.sqrt(MODULUS / DENSITY), []
     for ka in (0.2, 0.4):
         k = ka / SIDE
@@ -102,8 +100,7 @@ def test_a_cantilever_swings_at_timoshenkos_frequency(rock, dim, poisson, bound)
     """The lowest of a beam of 20 sides, 0.2 % below Euler's and Bernoulli's. Where Poisson's ratio
     is zero that beam is the whole truth but for terms in (a/L)^4, 6e-6. Else the clamp also keeps
     the section from widening, which shortens the column by some fiftieth of its side: omega, as the
-    square of the length, rises by a/25L, and elements longer than the side would spread it
-    further."""
+    square of the length, rises by a/25L, and elements longer than the side would do more."""
     length = 20 * SIDE
     body = rock(length, poisson, dim, along=16)
     exact = beam.timoshenko(MODULUS, poisson, DENSITY, SIDE, length)

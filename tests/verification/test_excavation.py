@@ -2,8 +2,7 @@
 begins to slip by Coulomb's criterion.
 
 Sides carry the in-situ stress, which a finite domain makes an error of (a/L)^2: here they carry
-what Kirsch's solution adds to it there, too.
-"""
+what Kirsch's solution adds to it there, too."""
 
 import numpy as np
 import pytest

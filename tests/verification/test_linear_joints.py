@@ -4,8 +4,7 @@ meshed as rock.
 Amplitudes are those of a Ricker pulse at its peak frequency, of which the exact incident wave is
 known. Per wavelength there are 20 quadratic elements, whose phase error per wavelength, below
 (k h)^4 / 1440 = 7e-6, and a step of a 300th of the period, (omega dt)^2 / 24 = 2e-5, leave far less
-than the bounds.
-"""
+than the bounds."""
 
 import numpy as np
 import pytest
@@ -41,8 +40,7 @@ def soft_joint(y, kappa, impedance=DENSITY * SPEED, block=1.0):
 
 
 def amplitude(times, wave):
-    """Return the magnitude of the Fourier integral of a wave, silent at both ends, at the peak
-    frequency."""
+    """Return the magnitude of the Fourier integral of a wave at the peak frequency."""
     return float(abs(wave @ np.exp(-2j * np.pi / PERIOD * times)) * (times[1] - times[0]))
 
 

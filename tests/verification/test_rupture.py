@@ -12,8 +12,7 @@ Beyond it a front spends G_c = b s D_c / 2 ln(V theta / D_c)^2 (Rubin & Ampuero,
 
 stops. The front of a longer one speeds up towards Rayleigh's speed, which it does not pass while
 the strength excess (mu_p - tau / s) / (tau / s - mu_d) is above 1.77 (Andrews, J. Geophys. Res. 81,
-1976), mu_p = mu_0 + a ln(V / V_0) + b ln(V_0 theta / D_c).
-"""
+1976), mu_p = mu_0 + a ln(V / V_0) + b ln(V_0 theta / D_c)."""
 
 from math import log, pi, sqrt
 

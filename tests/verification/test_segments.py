@@ -3,8 +3,7 @@ joints at random.
 
 Where two rocks of impedances Z1 and Z2 meet, R = (Z2 - Z1)/(Z2 + Z1) of the stress is reflected and
 T = 2 Z2/(Z1 + Z2) passes (Graff, Wave Motion in Elastic Solids, 1975); a layer between two others
-sends out what runs to and fro in it, a sum of delayed copies.
-"""
+sends out what runs to and fro in it, a sum of delayed copies."""
 
 from itertools import pairwise
 

@@ -1,7 +1,6 @@
 """Joints that weaken, dilate, or rub by rate and state, by every engine, against exact solutions.
 
-Shipped scenes: a shear pulse of 1 MPa meets one joint under 1 MPa, in waves of 32 m.
-"""
+Shipped scenes: a shear pulse of 1 MPa meets one joint under 1 MPa, in waves of 32 m."""
 
 from functools import cache, partial
 

@@ -3,8 +3,7 @@ each joint.
 
 A pillar of four blocks 2 m wide and 1.5 m thick: rock of 2000 kg/m3, E_eq = 8 GPa and nu = 1/4 with
 joints, 24 GPa and 1/5 without. Engines and solutions start from these numbers, so that a comparison
-of them sees no fault here.
-"""
+of them sees no fault here."""
 
 from math import pi, sqrt
 

@@ -1,7 +1,6 @@
 """Relaxation mechanisms of rock: their quality factor, moduli, dispersion and series with joints.
 
-The fit is asked for 4 % of Q (`SPACING`); per cent of what follows from it are derived there.
-"""
+The fit is asked for 4 % of Q (`SPACING`); per cent of what follows from it are derived there."""
 
 import numpy as np
 import pytest
@@ -28,8 +27,7 @@ def roots(memory, x: float, dt: float) -> np.ndarray:
 
     z - 2 + 1/z + x (relaxed + sum_l share_l gain_l (z - 1) / (dt (z - decay_l))) = 0,
 
-    as the eigenvalues of what a step makes of u, v dt and e_l.
-    """
+    as the eigenvalues of what a step makes of u, v dt and e_l."""
     size = memory.share.size
     force = np.concatenate([[memory.relaxed, 0.0], memory.share])
     step = np.zeros((size + 2, size + 2))

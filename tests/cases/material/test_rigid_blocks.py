@@ -1,5 +1,4 @@
-"""The stiffness between rigid blocks against numbers worked out by hand, and the critical step that
-follows from it."""
+"""The stiffness between rigid blocks by hand, and the critical step that follows from it."""
 
 import numpy as np
 import pytest
@@ -69,8 +68,7 @@ def test_joints_that_are_all_the_compliance_are_found_again():
 
 
 def test_a_set_without_cuts_is_softened_by_the_rock_between_its_joints(rock_with):
-    """(6) with the confined modulus 60 GPa and the shear modulus 20 GPa: 1/1e10 + 3/6e10 and
-    1/4e9 + 3/2e10."""
+    """(6), confined modulus 60 GPa and shear modulus 20 GPa: 1/1e10 + 3/6e10, 1/4e9 + 3/2e10."""
     own = found(rock_with({"dip": 20.0, "spacing": 3.0}))
     assert own.normal == pytest.approx([1 / 1.5e-10], rel=1e-12)
     assert own.shear == pytest.approx([1 / 4e-10], rel=1e-12)

@@ -1,7 +1,6 @@
 """Domains cut in the plane; widths and angles of polygons, independent of how these are cut.
 
-Polygons are given by their corners [k, 2], counter-clockwise.
-"""
+Polygons are given by their corners [k, 2], counter-clockwise."""
 
 import numpy as np
 

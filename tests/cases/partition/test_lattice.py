@@ -106,8 +106,7 @@ def test_rock_no_wider_than_a_block_stays_whole(scene):
 
 
 def test_rows_of_blocks_share_their_stiffness_with_periodic_sides_across_them(scene):
-    """Blocks touch their own images at a cut, as far apart as the sides are, though none is asked
-    for."""
+    """Blocks touch their own images at a cut, as far apart as the sides are, unasked."""
     sides = {"left": "periodic", "right": "periodic"}
     (seam,) = further_sets(scene({"dip": 0.0, "spacing": 1.0}, block=None, **sides))
     assert (abs(seam.dip), seam.spacing) == (90.0, 12.0)

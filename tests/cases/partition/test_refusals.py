@@ -1,5 +1,4 @@
-"""Rock masses that cannot be cut: in one line, with file, key, place and cause, beside those that
-can."""
+"""Rock masses that cannot be cut: one line of file, key, place and cause; and those that can."""
 
 import re
 import tracemalloc

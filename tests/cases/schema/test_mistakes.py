@@ -1,8 +1,7 @@
 """Every contradiction of a rock mass, in the plane and in space, as one line.
 
 A mistake is changes to a good scene, with the words that the line must hold, ... between them,
-behind the key and its value as they are changed last, or behind those that follow an arrow.
-"""
+behind the key and its value as they are changed last, or behind those that follow an arrow."""
 
 import tomllib
 

@@ -18,8 +18,7 @@ VARIANT = {"name": "S", "waves": [S_WAVE | {"file": "pulse.csv"}]}
 
 @pytest.fixture
 def written(tmp_path, in_toml):
-    """Return a function that writes a scene with more variants and tables, and the history that one
-    of them names."""
+    """Return a function that writes a scene with more tables, and the history that one names."""
     (tmp_path / "pulse.csv").write_text("0.0, 0.0\n0.01, 1.0\n0.02, 0.0\n")
 
     def write(*variants, **tables):

@@ -147,8 +147,7 @@ def test_compare_writes_figure_curves_and_distances(jointwave):
 
 
 def test_help_begins_with_what_one_does_first(jointwave):
-    """First steps, then the commands in that order, each in one whole line. No argument at all is a
-    call for it."""
+    """First steps, then the commands in that order, each in one line. No argument asks for it."""
     out = jointwave("--help").out
     assert jointwave("--version").out.startswith("jointwave 0.") and jointwave().out == out
     steps, _, commands = out.partition("\nCommands:\n")

@@ -76,8 +76,7 @@ except SystemExit as end:
     ],
 )
 def test_a_command_imports_nothing_that_it_does_not_use(arguments, line, heavy, tmp_path):
-    """Neither help nor completion what carries commands out, nor a run of rigid blocks what draws
-    or runs rock."""
+    """Neither help nor completion what carries commands out, nor blocks what draws or runs rock."""
     environment = os.environ | (asked(line) if line else {})
     out = ("--out", str(tmp_path)) if "run" in arguments else ()
     done = subprocess.run(

@@ -178,8 +178,7 @@ def test_the_pillar_s_stress_is_known_to_a_millionth(scene):
 
 @pytest.mark.parametrize("zeta", [0.02, 0.1, 1.5])
 def test_the_damped_bar_s_modes_agree(scene, misfit, zeta):
-    """Each to its own bound; both are smooth but at y = 0, where kinks of the load fall on
-    samples."""
+    """Each to its own bound; both are smooth but at y = 0, where the load has kinks."""
     at = scene(joints={"damping_ratio": zeta})
     a, b = modes.solve_damped(at), EQUIVALENT.run(at)
     assert max(misfit(a, b, variable) for variable in FIELDS) < 9e-5

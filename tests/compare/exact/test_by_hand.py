@@ -1,8 +1,7 @@
 """Exact solutions of two cubes and of their bar, each value worked out by hand.
 
 Cubes of 1 m and 1000 kg, E_eq = 2.5 MPa: k = 2.5e6 N/m between rigid blocks, c = 50 m/s and
-Z = 5e4 Pa s/m in the bar. A step load of 1000 Pa.
-"""
+Z = 5e4 Pa s/m in the bar. A step load of 1000 Pa."""
 
 from math import cos, pi, sin, sqrt
 

@@ -61,8 +61,7 @@ extended = pytest.mark.skipif(np.finfo(np.longdouble).eps > 1e-18, reason="no ex
     [*range(5), 8, *(pytest.param(s, marks=pytest.mark.slow) for s in (5, 6, 7, *range(9, 80)))],
 )
 def test_of_the_row_of_blocks(scene, seed):
-    """Against Taylor series in extended precision; of every third in space, a step across, off the
-    centre."""
+    """Against Taylor series in extended precision; of every third in space, off the centre."""
     table = random_table(scene, seed)
     if seed % 3 == 0:
         across = {"direction": [0.6, 0, 0.8], "at": [0.1, 0]}

@@ -64,8 +64,7 @@ def test_what_the_scene_does_not_excite_stands_nowhere(excited, listed):
 
 
 def test_a_receiver_without_motion_decides_nothing():
-    """At a free end stress itself is zero: half a percent of the largest stays out, two are 2 %, in
-    any unit."""
+    """At a free end stress itself is zero: half a percent of the largest stays out, two are 2 %."""
     for unit, (spurious, misfit) in product((1e-12, 1.0, 1e12), ((0.005, 0.0), (0.02, 0.02))):
         one, other = ([[0.0, unit], [0.0, unit * small]] for small in (spurious, 0.0))
         assert worst(*pair(one, other)).misfit == pytest.approx(misfit)

@@ -208,8 +208,7 @@ def test_solutions_are_in_words_and_verdicts_never_a_colour_alone(whole):
 
 @pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
 def test_no_text_is_clipped_or_lies_over_another(opened, size):
-    """The first narrow screen shows the verdict and the cost, too; what scrolls says so and nothing
-    else."""
+    """The first narrow screen shows the verdict and the cost, too; what scrolls says so."""
     page = opened(size)
     page.wait_for_timeout(200)  # for the timelines of scrolling
     hints = page.evaluate(HINTS)

@@ -1,5 +1,4 @@
-"""The page from synthetic parts: failures, missing parts, odd characters, tables; and the names of
-its scenes."""
+"""The page from synthetic parts: failures, missing parts, odd characters, tables, scene names."""
 
 import re
 

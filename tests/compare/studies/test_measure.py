@@ -25,8 +25,7 @@ def measured(study, number=0):
 
 def test_the_floor_is_how_far_the_coarser_run_is_from_the_finer(study):
     """And bounds the finer run's own error: leapfrog of second order, it is a third of that. Errors
-    from it are nearly those from the exact solution, a matrix exponential that knows its
-    round-off."""
+    from it are nearly those from the exact solution, exact to its round-off."""
     blocks = {"label": "blocks", "method": "dem", "own": "finest", "vary": {STEP: [0.4]}}
     asked = study([blocks], finest=FINE, timed=True, repeats=1)
     row, exact_row = measured(asked), measured(study())

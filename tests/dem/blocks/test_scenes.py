@@ -91,8 +91,7 @@ SLIPS = {"friction_angle": 5.0, "cohesion": 1e4}
 @pytest.mark.parametrize("law", [{}, SLIPS], ids=["elastic", "slip"])
 def test_a_row_is_the_row_in_space(law, rock_mass, pillar, plain):
     """Blocks under an oblique blow beside their axis, which compresses, bends and shears them: per
-    metre of thickness they are the row of square section over its side, to the round-off of 250
-    steps."""
+    metre of thickness they are the row of square section over its side, to round-off."""
     blow = SINE | {"kind": "force", "quantity": "force", "at": [0.35, 0.0], "amplitude": 5e5}
     plane = {"loads": [blow | {"direction": [0.6, 0.8]}], "time": {"duration": 2e-3}}
     critical = plan(column(rock_mass, top="free", joint=law, **plane)).critical
@@ -161,8 +160,7 @@ def test_a_prestress_that_joints_cannot_carry_is_refused_in_one_line(law, what, 
 
 
 def test_the_ledger_of_a_shaken_base_closes(rock_mass):
-    """With the work of the base, on which blocks end a slow shake where it does, and what a quiet
-    top takes."""
+    """With the work of the base, which takes blocks along slowly, and what a quiet top takes."""
     base = {"kind": "base", "side": "bottom", "direction": [0.8, 0.6], "shape": "sine"}
     base |= {"quantity": "velocity", "amplitude": 0.1, "period": 0.2, "cycles": 1}
     own = rock_mass(

@@ -47,8 +47,7 @@ def test_idle_effect_changes_no_bit(fixture, own, idle, request):
 def test_friction_that_is_never_reached_changes_round_off_alone(row):
     """A joint that may slip or open is summed over its points, one that holds over its section.
 
-    Both sums differ in the last digits, which some thousand steps make 1e-12 of the largest.
-    """
+    Both sums differ in the last digits, which some thousand steps make 1e-12 of the largest."""
     idle = {"friction_angle": 20.0, "cohesion": 1e9, "point_rule": "midpoint"}
     without, with_idle = (waveforms(dem.simulate(row(**x))) for x in ({}, {"joints": idle}))
     for name, values in without.items():

@@ -55,8 +55,7 @@ QUANTITIES = ("stress", "velocity", "displacement")
 
 @pytest.mark.parametrize("changes", CHAINS.values(), ids=CHAINS)
 def test_fourth_order_against_the_time_exact_chain(fourth, changes):
-    """Stress, velocity and displacement, and the energy ledger; jumps and kinks at whole steps cost
-    no order."""
+    """Stress, velocity and displacement, and the energy ledger; kinks at whole steps cost none."""
     steps, errors, exact = [], [], row_of_blocks.solve(fourth(0.3, **changes))
     for fraction in (0.3, 0.15, 0.075):
         result = dem.simulate(fourth(fraction, **changes))

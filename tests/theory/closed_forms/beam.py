@@ -7,8 +7,7 @@ r^2 = I / (A L^2), s^2 = E I / (kappa G A L^2) (Huang, J. Appl. Mech. 28, 1961)
     2 + (b^2 (r^2 - s^2)^2 + 2) cosh(b p) cos(b q) - b (r^2 + s^2) / sqrt(1 - b^2 r^2 s^2)
         sinh(b p) sin(b q) = 0,   2 p^2, 2 q^2 = -+(r^2 + s^2) + sqrt((r^2 - s^2)^2 + 4/b^2)
 
-Cowper's kappa of the rectangle is 10 (1 + nu) / (12 + 11 nu) (J. Appl. Mech. 33, 1966).
-"""
+Cowper's kappa of the rectangle is 10 (1 + nu) / (12 + 11 nu) (J. Appl. Mech. 33, 1966)."""
 
 from math import cos, cosh, sin, sinh, sqrt
 

@@ -8,8 +8,7 @@ q e^{i (k . L - omega t)} of the images,
 
 (Floquet-Bloch; Brillouin, Wave Propagation in Periodic Structures, 1946). The phase of a block is
 that of its cell. Holds for small motions of contacts that stay closed and do not slip. Leapfrog on
-it is exact too (`leapfrog`).
-"""
+it is exact too (`leapfrog`)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -26,8 +25,7 @@ class Cell(NamedTuple):
     """The blocks and contacts of a cell.
 
     mass : [blocks, freedoms], kg and kg m2 (in the plane per m). contacts : of blocks i with images
-    of blocks j. shift : of the images [contacts, d], m.
-    """
+    of blocks j. shift : of the images [contacts, d], m."""
 
     mass: np.ndarray
     contacts: Contacts
@@ -78,8 +76,7 @@ def periodic(
     """Return a domain with periodic sides across these axes as a cell.
 
     springs : normal and shear stiffness of each joint set and, last, of cuts through rock, Pa/m.
-    sets : their names. bending : part of the second moments that the points of contacts have.
-    """
+    sets : their names. bending : part of the second moments that the points of contacts have."""
     extent = np.ptp(blocks.body.vertices, axis=0)
     parts = [(blocks.contacts, 0 * extent)]
     for axis in axes:

@@ -15,8 +15,7 @@ at a quarter of the side.
 Long waves along x have the speeds c_p^2 = k_n A^2 / m and c_s^2 = k_s A^2 / (2 m), since both sets
 of joints shear; the third branch begins at omega^2 = 2 k_s A^2 / I, the blocks turning in place.
 C_12 = 0: pressure along x does not press along y, whatever the stiffnesses. Leapfrog on it is exact
-too (`bloch.leapfrog`).
-"""
+too (`bloch.leapfrog`)."""
 
 from dataclasses import dataclass
 

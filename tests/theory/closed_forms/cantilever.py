@@ -5,8 +5,7 @@ force S_j = j m g and the moment M_j = m g d j^2 / 2 of the j blocks before it, 
 e_j = S_j / k_s and turns by phi_j = M_j / k_b, at the wall half as much because its spring is that
 of half a block; k_s = K'_s A and k_b = K'_n I of the contact points, and block i moves by
 
-    u_i = sum_{j >= i} e_j + phi_j (j - i + 1/2) d,   theta_i = sum_{j >= i} phi_j
-"""
+    u_i = sum_{j >= i} e_j + phi_j (j - i + 1/2) d,   theta_i = sum_{j >= i} phi_j"""
 
 import numpy as np
 

@@ -10,8 +10,7 @@ and in a strip of width a in plane stress, which widens one way only, r_p^2 = a^
 torsion run at sqrt(G J / (rho I_p)), with Saint-Venant's torsion constant of the square (Timoshenko
 & Goodier, Theory of Elasticity, 1970, section 109)
 
-    J = (a^4/3) (1 - (192/pi^5) sum_{n odd} tanh(n pi/2) / n^5) = 0.140577 a^4,   I_p = a^4/6
-"""
+    J = (a^4/3) (1 - (192/pi^5) sum_{n odd} tanh(n pi/2) / n^5) = 0.140577 a^4,   I_p = a^4/6"""
 
 from math import pi, sqrt, tanh
 

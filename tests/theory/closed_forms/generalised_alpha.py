@@ -11,8 +11,7 @@ Finite Element Method, 2000, section 9.3). Constants are (alpha_m, alpha_f, beta
 x = omega dt.
 
 Linear undamped systems decouple into such modes (`leapfrog.modes`), and so do those with dashpots
-in proportion to their springs, xi = eta omega / 2.
-"""
+in proportion to their springs, xi = eta omega / 2."""
 
 from typing import NamedTuple
 
@@ -50,8 +49,7 @@ def response(
     ----------
     omega, xi : frequencies, rad/s, and damping ratios, float arrays [modes].
     force : float array [modes, steps + 1], over the modal mass, m/s2, at steps 0, 1, ...
-    dt : s.
-    """
+    dt : s."""
     alpha_f = constants[1]
     new, old = _both_ends(constants, omega * dt, np.broadcast_to(xi, omega.shape))
     out = np.zeros((*force.shape, 3))

@@ -7,8 +7,7 @@ the hole was there (Jaeger, Cook & Zimmerman, Fundamentals of Rock Mechanics, 20
     sigma_tt = p (1 + s) - q (1 + 3 s^2) cos 2t
     sigma_rt = -q (1 + 2 s - 3 s^2) sin 2t
     2 G u_r = -(a^2/r) (p + q (4 (1 - nu) - s) cos 2t)
-    2 G u_t = (a^2/r) q (2 (1 - 2 nu) + s) sin 2t
-"""
+    2 G u_t = (a^2/r) q (2 (1 - 2 nu) + s) sin 2t"""
 
 from typing import NamedTuple
 

@@ -10,8 +10,7 @@ In isotropic rock with Lame's constants lambda and G and density rho
     sigma_ij = g (lambda delta_ij sum_l D_ll + G (D_ij + D_ji)),   D_ij = k_ij cos(theta_i)
 
 and the body force is rho u'' - div sigma, the traction on the surface sigma n: on a test function v
-both together do the work of rho u'' . v + sigma : grad v. g(t) = sin(omega t + psi).
-"""
+both together do the work of rho u'' . v + sigma : grad v. g(t) = sin(omega t + psi)."""
 
 from typing import NamedTuple
 
@@ -21,8 +20,7 @@ import numpy as np
 class Manufactured(NamedTuple):
     """wave : float array [dim, dim], k_i of component i, 1/m; phase : phi_i [dim]; amplitude 1 m.
 
-    omega, start : of g, rad/s and rad.
-    """
+    omega, start : of g, rad/s and rad."""
 
     wave: np.ndarray
     phase: np.ndarray

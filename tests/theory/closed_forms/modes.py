@@ -8,8 +8,7 @@ function of each mode gives
     q^j = (dt^2 / m_n) sum_{k < j} F^k sin((j - k) Omega dt) / sin(Omega dt)
 
 and (j - k) in place of the quotient for a rigid mode. It follows from the recursion
-q^{j+1} - 2 cos(Omega dt) q^j + q^{j-1} = dt^2 F^j / m_n; derived for this project.
-"""
+q^{j+1} - 2 cos(Omega dt) q^j + q^{j-1} = dt^2 F^j / m_n; derived for this project."""
 
 from typing import NamedTuple
 

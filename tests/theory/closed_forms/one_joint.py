@@ -30,8 +30,7 @@ def slip_coefficients(a: float) -> tuple[float, float, float]:
     A^2 = 1 - T^2 - R^2, the share of the energy that goes into friction. With s = asin a
 
         T^2 = (2/pi)(s - a sqrt(1 - a^2) + a^2 (pi - 2 s))
-        R^2 = (4/pi)((pi/2 - s)/2 + sin(2 s)/4 - 2 a cos s + a^2 (pi/2 - s))
-    """
+        R^2 = (4/pi)((pi/2 - s)/2 + sin(2 s)/4 - 2 a cos s + a^2 (pi/2 - s))"""
     s = asin(a)
     T2 = 2 / pi * (s - a * sqrt(1 - a**2) + a**2 * (pi - 2 * s))
     R2 = 4 / pi * ((pi / 2 - s) / 2 + sin(2 * s) / 4 - 2 * a * cos(s) + a**2 * (pi / 2 - s))

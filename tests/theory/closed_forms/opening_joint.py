@@ -7,8 +7,7 @@ v_I, v_R = 0. So the gap is (2/Z) times the reflected Lindley recursion of the i
 
     gap(t) = (2/Z) (max_{s <= t} I(s) - I(t)),   I(t) = integral of sigma_I,
 
-the joint is closed where I is at its maximum so far, and sigma_T is the rate of that maximum.
-"""
+the joint is closed where I is at its maximum so far, and sigma_T is the rate of that maximum."""
 
 import numpy as np
 

@@ -10,8 +10,7 @@ matrix by Chebyshev polynomials: Born & Wolf, Principles of Optics, 1999, sectio
 
     1 / |T|^2 = 1 + (sin(N phi) / sin(phi))^2 / (4 kappa^2)
 
-phi is real in a pass band and complex in a stop band. N = 1 is the joint of `one_joint`.
-"""
+phi is real in a pass band and complex in a stop band. N = 1 is the joint of `one_joint`."""
 
 from math import pi
 

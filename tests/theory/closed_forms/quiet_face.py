@@ -9,8 +9,7 @@ satisfy
     -(C + c) r_p + (S + s) r_s             = C - c          |  s - S
      (X + sin theta) r_p + (C + k) r_s     = X - sin theta  |  C - k
 
-for P | SV. They do not depend on frequency.
-"""
+for P | SV. They do not depend on frequency."""
 
 import numpy as np
 
@@ -20,8 +19,7 @@ from jointwave.cases.material.rock import ElasticRock
 def coefficients(incidence: str, angle: float, rock: ElasticRock) -> np.ndarray:
     """Return the complex r_p and r_s over the incident amplitude of particle velocity.
 
-    incidence : "P" or "SV". angle : of travel from the normal, rad.
-    """
+    incidence : "P" or "SV". angle : of travel from the normal, rad."""
     a, b = rock.p_speed, rock.s_speed
     slowness = np.sin(angle) / (a if incidence == "P" else b)
     s, along = b * slowness, a * slowness

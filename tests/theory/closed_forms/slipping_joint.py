@@ -7,8 +7,7 @@ joint follows
     [u]' = (Y+ - Y-) T - v_I + Y- T_I,   T_n = K_n [u_n],  T_s = K_s ([u_s] - slip),  |T_s| <= c
 
 with v_I, T_I the incident wave's own. Heun's method. Axes t along and n across the joint, in the
-direction of travel; written for tests alone.
-"""
+direction of travel; written for tests alone."""
 
 import numpy as np
 

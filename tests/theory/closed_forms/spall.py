@@ -6,8 +6,7 @@ add up to the tension (Kolsky, Stress Waves in Solids, 1953)
     g(x, t) = f(t - (L + x)/c) - f(t - (L - x)/c)
 
 The first failure is the least t with g >= sigma_t anywhere. A saw tooth of length lam breaks at
-x = lam sigma_t / (2 p0). Holds until the reflection is back at the start.
-"""
+x = lam sigma_t / (2 p0). Holds until the reflection is back at the start."""
 
 from typing import NamedTuple
 
@@ -32,8 +31,7 @@ REFINEMENTS = 3  # of the grid, each by POINTS / 10 about the first failure
 class Spall(NamedTuple):
     """Where and when tension first reaches the strength.
 
-    distance : from the free end, m. time : since the pulse entered at the start, s.
-    """
+    distance : from the free end, m. time : since the pulse entered at the start, s."""
 
     distance: float
     time: float
@@ -45,8 +43,7 @@ def spall(
     """Return the first failure in tension of a homogenised bar, None where there is none.
 
     load : the end stress up to `duration` (s), Pa, compression positive. strength : tensile, Pa.
-    length, speed : of the bar, m and m/s.
-    """
+    length, speed : of the bar, m and m/s."""
     x, t = np.linspace(0.0, length, POINTS), np.linspace(0.0, duration, POINTS)
     found = None
     for _ in range(1 + REFINEMENTS):

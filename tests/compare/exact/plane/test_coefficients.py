@@ -26,8 +26,7 @@ class Boundaries(NamedTuple):
     """Rock and parallel joints as one linear system of boundary conditions, in plain numbers.
 
     rock : density, speeds, of all layers or of each. joints : rows K_n, K_s, eta_n, eta_s.
-    spacings : between them.
-    """
+    spacings : between them."""
 
     rock: tuple[float, float, float] | list[tuple[float, float, float]]
     joints: list[tuple[float, float, float, float]]
@@ -112,8 +111,7 @@ def test_layers_of_unlike_rocks_are_the_system_of_all_conditions(kind):
 
 @pytest.mark.parametrize("degrees", [0, 20, 80])
 def test_sh_in_closed_form(degrees):
-    """T = 1 / (1 - i x), x = omega Z_s cos(phi) / 2 K_s with K_s - i omega eta of a dashpot;
-    R = 1 - T."""
+    """T = 1 / (1 - i x), x = omega Z_s cos(phi) / 2 K_s with K_s - i omega eta; R = 1 - T."""
     rock, phi = ElasticRock(2600.0, 5000.0, 2900.0), np.radians(degrees)
     omega, K = np.array([10.0, 500.0, 4e3]), 3e9
     for eta in (0.0, 2e6):

@@ -41,8 +41,7 @@ def crossed(rock_mass, joint):
 def test_waves_travel_at_the_speeds_of_the_medium(crossed, wave, kind, direction, speed, law):
     """Those of lambda = mu = rho = 1 with two orthogonal sets of spacing 1, K_n = 2 and K_s = 1, or
     K_n = 0.2 and K_s = 20, by which P is slower than S; 1 MPa on the front of 2500 kg/m3 moves
-    particles at 1e6 / (2500 c) along the travel or to its left, and the traction on the front is
-    that stress."""
+    particles at 1e6 / (2500 c) along the travel or to its left, the front bears that stress."""
     waves = [wave(kind=kind, direction=direction)]
     scene = crossed(law, waves=waves, time={"duration": 0.04})
     found, c, n = solve("effective-medium", scene), speed * B, np.array(direction)

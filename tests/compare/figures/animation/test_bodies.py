@@ -1,5 +1,4 @@
-"""Bodies: the outside of blocks, where they move to, in the colours of their cells, near before
-far."""
+"""Bodies: the outside of blocks, where they move to, in colours of their cells, near before far."""
 
 import numpy as np
 import pytest

@@ -49,8 +49,7 @@ def until(process, holds):
 
 
 def refuse_difference(*paths):
-    """Fail unless two results are bit-identical, except for their cost: a run that goes on factors
-    anew."""
+    """Fail unless two results are bit-identical, but for their cost: a resumed run factors anew."""
     one, other = (xr.load_dataset(path) for path in paths)
     for result in (one, other):
         cost = ("seconds_", "factorisations")
