@@ -38,6 +38,7 @@ SLIPS = ("friction_angle", "cohesion", "residual_cohesion", *WEAKENS.keys)
 BESIDE = 2e-9  # m
 ROUND_OFF = 1e-11  # over the largest value of a waveform
 SHEARED = 1e-9  # shear along a joint over the prestress that is neglected
+MOST = 2e5  # time constants of a joint, which take a minute to integrate
 LINEAR = np.inf  # m, maximum closure of a linear joint
 
 
@@ -54,13 +55,23 @@ def applies(scene: RockMass) -> Answer:
     normal = stack_of(scene).normal
     oblique = not all(along(np.array(one.direction), normal) for one in scene.waves)
     ways = {np.sign(normal @ one.direction) for one in scene.waves}
+    stiff = max((_time_constants(scene, one) for one in scene.waves), default=0.0)
     answer = Answer.unless(
+        (stiff > MOST, f"the joint is too stiff: the scene lasts {stiff:.2g} times its Z / 2K"),
         (any(one.damping_ratio for one in sets), "the joint is damped"),
         (oblique, "a wave is not one at normal incidence"),
         (len(waves) < len(scene.waves), "several waves are of one kind"),
         (len(ways) > 1, "waves meet the joint from both sides"),
     )
     return answer and _slips_as_known(scene, sets[0]) if "S" in waves else answer
+
+
+def _time_constants(scene: RockMass, wave: Wave) -> float:
+    """Return the duration over Z / 2K of the joint that a wave makes stiffen or slip."""
+    one, along_front = scene.joint_sets[0], wave.kind == "S"
+    K = one.shear_stiffness if along_front else one.maximum_closure and one.normal_stiffness
+    met = plane_wave(scene, wave)
+    return 2 * (K or 0.0) * scene.time.duration / (float(met.rock.density) * met.speed)
 
 
 def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:

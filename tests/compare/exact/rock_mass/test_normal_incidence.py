@@ -35,6 +35,16 @@ def test_a_strong_joint_and_one_that_hardly_closes_are_linear(
         assert np.abs(one - other).max() <= bound * size, name
 
 
+@pytest.mark.parametrize(
+    "law, kind",
+    [(SLIPS | {"shear_stiffness": 1e14}, "S"), (CLOSES | {"normal_stiffness": 1e14}, "P")],
+)
+def test_a_joint_too_stiff_to_integrate_is_refused_at_once(straight, law, kind):
+    """It took ten minutes and more, also before a run of an engine."""
+    answer = applies("normal-incidence", straight(law, {"kind": kind}, PRESSED))
+    assert "too stiff: the scene lasts" in answer.reason
+
+
 def marched_in_time(scene, times):
     """Return normal stress, shear stress and slip of the one joint of a scene over time, Pa and m,
     by Euler's steps of 1e-6 s: in each the jumps grow by what the waves do not pass, and the shear
