@@ -9,6 +9,7 @@ import numpy as np
 
 from jointwave.cases.histories import Gabor, Ricker
 from jointwave.cases.loads import LEAST_BLOCKS, frequency_of, highest_frequency, history_of
+from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.material.contact_points import lever
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import Joints
@@ -18,6 +19,8 @@ LEAST_LEVER = 0.75  # of contact points on a face that opens, over its half widt
 ONSET = 0.01  # of a load's peak: defines its beginning
 LATE = 5.0  #: end of a table over the duration beyond which it was hardly cut off on purpose
 STATIC = 100.0  #: more crossings of the rock per shortest period: not a wave test
+ABSORBING = "quiet", "matched"  # conditions of sides with dashpots
+OF_DISPERSION = 0.02  # reflected by their impedance at another frequency than the wave's
 MOST_REFLECTED = 0.05  # by sides whose impedance is that of joints before they close further
 LEAST_SAMPLES = 10  # per period: they miss at most 5 % of a sine's peak
 LEAST_DAMPING = 1 / 80  # ratio: waves of two blocks' length decay to 1/e within 20 blocks
@@ -64,7 +67,7 @@ def of_sources(
                 f"rises in {OF_A_RISE * block / speed(pulse):.3g} s (a 'triangle' of long "
                 "decay, a 'table') overshoots by at most 2 %"
             )
-        if held in ("quiet", "matched"):
+        if held in ABSORBING:
             yield (
                 f"{table}.amplitude = {pulse.amplitude:g} acts on the dashpot of "
                 f"{pressed[table]} = '{held}', too, which takes half: {pulse.amplitude / 2:g} "
@@ -72,14 +75,7 @@ def of_sources(
             )
     highest = highest_frequency(scene)
     if highest is not None and scene.rock.quality_factor is not None:
-        _, low, high = scene.rock.quality_frequencies(scene.pulses)
-        felt = [highest, *(1 / one.time_scale for one in scene.pulses if one.time_scale)]
-        if beyond := [one for one in felt if not low <= one <= high]:
-            yield (
-                f"rock.quality_factor = {scene.rock.quality_factor:g} holds from {low:.4g} to "
-                f"{high:.4g} Hz and rises beyond, but the load reaches {beyond[0]:.4g} Hz: give "
-                "rock.quality_band"
-            )
+        yield from _of_quality(scene, highest)
     if highest is not None and (samples := 1 / (highest * scene.interval)) < LEAST_SAMPLES:
         yield (
             f"record.interval = {scene.interval:g} s takes {samples:.2g} samples in a period at "
@@ -106,6 +102,29 @@ def of_sources(
             )
     levers = (line for table, joints in opening.items() for line in _of_lever(table, joints))
     yield from islice(levers, 1)
+
+
+def _of_quality(scene: AnyScene, highest: float) -> Iterator[str]:
+    """Warn of loads beyond the band of constant Q, and of dashpots at sides whose impedance, that
+    of the rock at its reference frequency, is not the wave's; highest : frequency of the loads."""
+    at, low, high = scene.rock.quality_frequencies(scene.pulses)
+    own = [1 / one.time_scale for one in scene.pulses if one.time_scale] or [highest]
+    if beyond := [one for one in (highest, *own) if not low <= one <= high]:
+        yield (
+            f"rock.quality_factor = {scene.rock.quality_factor:g} holds from {low:.4g} to "
+            f"{high:.4g} Hz and rises beyond, but the load reaches {beyond[0]:.4g} Hz: give "
+            "rock.quality_band"
+        )
+    absorb = [f"{key} = '{kind}'" for key, kind in scene.sides.items() if kind in ABSORBING]
+    rock = mechanisms_of(scene, "jointed")
+    assert rock is not None
+    speed = 1 / float((1 / np.sqrt(rock.modulus(2j * np.pi * np.array(max(own))))).real)
+    if absorb and (reflects := abs(speed - 1) / (speed + 1)) > OF_DISPERSION:
+        yield (
+            f"{absorb[0]} has rock's impedance at rock.reference_frequency = {at:g} Hz: waves of "
+            f"{max(own):.4g} Hz are {speed:.4g} times as fast, {reflects:.2g} of them is reflected "
+            "there, and as much is missing from, or added to, waves that enter"
+        )
 
 
 def _of_pulse(table: str, pulse: Pulse, end: float, crossings: float) -> Iterator[str]:

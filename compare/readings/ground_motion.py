@@ -2,7 +2,7 @@
 
 All are exact for linear interpolation between the recorded samples of velocity or acceleration,
 except that spectra of a velocity use its slopes between samples as accelerations at the midpoints,
-linear between these.
+linear between these, and the peak velocity of an acceleration is that at its samples.
 """
 
 from collections.abc import Sequence
