@@ -6,9 +6,10 @@ in which no joints cut: at right angles, or those of ISOTROPIC in rock with a Po
 joints have one direction or none. A quiet side parallel to planes lies at the middle of a block,
 which moves like the lattice there; other sides lie at a plane. Each region of rock has its own
 lattice and a plane along its boundary. Rock no wider than the size is not cut, except in layers of
-about one block, which are one row of triangles or tetrahedra.
+a fifth of a block or more, which are one row of triangles or tetrahedra.
 """
 
+from collections.abc import Iterator
 from math import ceil, inf
 from typing import NamedTuple
 
@@ -26,7 +27,7 @@ from jointwave.cases.schema.rock_mass import REST, RockMass
 AT_SIDE = {"quiet": 0.5, "periodic": 0.0, "free": 1.0, "fixed": 1.0, "roller": 1.0}
 ALIKE = 1e-11  #: sine of the angle below which directions are equal
 ACROSS = 3**0.5 / 2
-LAYER = 2 / 3  # least thickness of a layer within wider rock that is cut as this is, in blocks
+LAYER = 0.2  #: least thickness of a layer within wider rock that is cut as this is, in blocks
 #: For 2 or 3 directions in which rock is cut: the planes besides those across the first one, as
 #: normals and spacings over the first spacing. They give long waves one speed in all directions and
 #: any Poisson's ratio: equilateral triangles, or cubes of five tetrahedra each.
@@ -52,6 +53,15 @@ class Place(NamedTuple):
         """Return the extent of the rock along a normal, m."""
         return float(np.ptp(self.corners @ normal))
 
+    def holds(self, group: list[JointSet]) -> bool:
+        """Return whether a joint of parallel sets lies within the rock."""
+        for one in group:
+            heights = (self.corners - one.origin) @ one.normal
+            low, high = heights.min() + self.tolerance, heights.max() - self.tolerance
+            if low <= ((one.spacing and ceil(low / one.spacing) * one.spacing) or 0.0) <= high:
+                return True
+        return False
+
     def rest(self, normal: np.ndarray) -> float | None:
         """Return the distance from the rock's end along a normal to the next plane, in blocks; None
         if no side there is parallel to the planes."""
@@ -63,8 +73,6 @@ class Place(NamedTuple):
 def further_sets(scene: RockMass) -> list[JointSet]:
     """Return the sets of cuts between the joints of a scene; without numerics.dem.block only those
     along periodic sides. Raises SceneError, in one line, for joints that no lattice can contain."""
-    from scipy.spatial import ConvexHull
-
     block = scene.numerics.dem.block
     if block is None and not scene.boundaries.sides("periodic"):
         return []
@@ -73,7 +81,30 @@ def further_sets(scene: RockMass) -> list[JointSet]:
             key = "ends_at" if one.ends_at else "scatter"
             allowed = f"cannot cut the rock between joints with {key}, which '{one.name}' has"
             raise SceneError(scene.where, "numerics.dem.block", block, allowed)
-    shape, found = shape_of(scene.domain), []
+    found = []
+    for own, place, regions in _places(scene):
+        sets = _cuts(own, place, block or inf)
+        found += [one.model_copy(update={"regions": regions}) for one in sets]
+    return [one.model_copy(update={"name": f"cut {k}"}) for k, one in enumerate(found)]
+
+
+def thin_layers(scene: RockMass) -> Iterator[tuple[str, float]]:
+    """Yield regions too thin to be cut in triangles or tetrahedra, and their thickness, m: their
+    blocks have no Poisson effect."""
+    dim, corners = scene.domain.dimension, np.array(scene.domain.corners)
+    for own, place, regions in _places(scene):
+        least, groups = LAYER * (scene.numerics.dem.block or 0.0), by_direction(own.joint_sets)
+        axes = [*_across(groups, dim), *(x[0].normal for x in groups if not place.holds(x))]
+        for axis in axes if len(groups) < 2 and not squared(own) else ():
+            if (thickness := place.extent(axis)) <= least < np.ptp(corners @ axis):
+                yield regions[0], thickness
+
+
+def _places(scene: RockMass) -> Iterator[tuple[RockMass, Place, list[str]]]:
+    """Yield each region as a scene with one rock, its place, and its name if there are regions."""
+    from scipy.spatial import ConvexHull
+
+    shape = shape_of(scene.domain)
     rock = blocks_of(rock_of(shape, scene.regions), shape.tolerance)
     body, edge, names = rock.body, rock.boundary, [*(one.name for one in scene.regions), REST]
     held, side = scene.boundaries.model_dump(), shape.sides_of(edge.outlines, edge.side)
@@ -88,30 +119,30 @@ def further_sets(scene: RockMass) -> list[JointSet]:
             np.append(np.ones(inside.sum()), rests[side[outer]]),
             shape.tolerance,
         )
-        sets = _cuts(own, place, block or inf)
-        found += [
-            one.model_copy(update={"regions": names[k : k + 1] if scene.regions else []})
-            for one in sets
-        ]
-    return [one.model_copy(update={"name": f"cut {k}"}) for k, one in enumerate(found)]
+        yield own, place, names[k : k + 1] if scene.regions else []
 
 
 def _cuts(scene: RockMass, place: Place, block: float) -> list[JointSet]:
     """Return the sets of cuts of a scene with one rock."""
-    dim, found = scene.domain.dimension, []
+    dim, found, corners = scene.domain.dimension, [], np.array(scene.domain.corners)
+
+    def least(axis: np.ndarray) -> float:
+        return block * (LAYER if np.ptp(corners @ axis) > block else 1.0)
+
     groups = by_direction(scene.joint_sets)
     normals = [group[0].normal for group in groups]
     for normal, group in zip(normals, groups, strict=True):
         first = next((one for one in group if one.spacing is not None), group[0])
-        if first.spacing is None:
+        if least(normal) < place.extent(normal) <= block and not place.holds(group):
+            found.append(_planes(place, normal, block))
+        elif first.spacing is None:
             away = np.abs((place.corners - first.through) @ normal).max()
             if min(place.extent(normal), away) > block:
                 found.append(_planes(place, normal, block, first.through, True))
         elif (parts := max(1, round(first.spacing / block))) > 1:
             found.append(_set(normal, first.spacing / parts, first.through))
-    across, corners = _across(groups, dim), np.array(scene.domain.corners)
-    least = [block * (LAYER if np.ptp(corners @ axis) > block else 1.0) for axis in across]
-    wide = [axis for k, axis in enumerate(across) if place.extent(axis) > least[k]]
+    across = _across(groups, dim)
+    wide = [axis for axis in across if place.extent(axis) > least(axis)]
     if not groups and wide:
         normals = [wide.pop(0)]
         found.append(_planes(place, normals[0], block))

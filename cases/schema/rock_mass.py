@@ -124,7 +124,7 @@ class DemOfRock(tables.BlockStepping):
 
     #: m, approximate block size: rock between joints is subdivided by joints of its own stiffness;
     #: absent: blocks are cut by the joint sets only; rock no wider than this is not cut, but layers
-    #: of about this size within wider rock
+    #: of a fifth of this size or more within wider rock
     block: Positive | None = None
 
 

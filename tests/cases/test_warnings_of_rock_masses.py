@@ -117,6 +117,18 @@ def test_points_where_the_stress_of_triangles_does_not_converge_are_named(mass):
     assert [one for one in said(**along) if "weld" in one] == []
 
 
+def test_layers_that_rigid_blocks_do_not_cut_are_named(mass):
+    """Those thinner than a fifth of a block, but where no rock has a Poisson effect."""
+    for thick, poisson, count in ((0.19, 0.25, 1), (0.21, 0.25, 0), (0.19, 0.0, 0)):
+        places = {"seam": [0.0, 9.0], "above": [0.0, 9.0 + 0.4 * thick]}
+        seam = [{"name": name, "through": at} for name, at in places.items()]
+        own = {"rock__intact_poisson": poisson, "joint_sets": [], "record__joints": []}
+        own |= {"domain__least_width": 0.01}
+        found = warnings(mass(regions=seam, numerics__dem__block=0.4, **own))
+        line = f"region 'seam' is {0.4 * thick:.3g} m thick, less than 0.2 of numerics.dem.block"
+        assert sum(one.startswith(line) for one in found) == count, (thick, found)
+
+
 def test_joints_lost_beside_sides_that_hold_the_rock_are_named(mass):
     """Within a hundredth of the spacing; in the side they are none, and quiet sides lose none that
     would be seen."""
