@@ -83,7 +83,8 @@ def prism(corners: np.ndarray, axis: int, span: tuple[float, float]) -> Solid:
 
 def corners_of(polygon: shapely.Geometry) -> np.ndarray:
     """Return a polygon's corners [n, 2], not collinear, counter-clockwise from the lower left."""
-    points = shapely.get_coordinates(shapely.geometry.polygon.orient(polygon).exterior)[:-1]
+    once = shapely.remove_repeated_points(polygon, STRAIGHT * polygon.length)
+    points = shapely.get_coordinates(shapely.geometry.polygon.orient(once).exterior)[:-1]
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     flat = np.abs(turn) <= STRAIGHT * np.hypot(*before.T) * np.hypot(*after.T)
