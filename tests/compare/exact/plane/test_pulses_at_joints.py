@@ -150,7 +150,7 @@ def test_the_error_is_bounded(monkeypatch, rock, kind, degrees, stiffness, shape
         monkeypatch.setattr(module, "STEPS", 1024)
 
     def half_sine(t):
-        return np.where(t < 0.01, np.sin(np.pi * np.minimum(t, 0.01) / 0.01), 0.0)
+        return np.sin(np.pi * np.clip(t, 0.0, 0.01) / 0.01)
 
     pulse, wave = {"ricker": ricker, "half-sine": half_sine}[shape], (kind, directed(degrees))
     joints = [Joint(stiffness, stiffness / 2)] * 2
