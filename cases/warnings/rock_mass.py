@@ -241,6 +241,17 @@ def _of_dashpots(scene: RockMass) -> Iterator[str]:
             yield of_dashpot(f"joint_sets[{i}]", one.damping_ratio, length, etas[i])
 
 
+def _of_seeds(scene: RockMass) -> Iterator[str]:
+    """Warn of joint sets with one seed."""
+    first: dict[int, int] = {}
+    for i, one in enumerate(scene.joint_sets):
+        if one.seed is not None and (k := first.setdefault(one.seed, i)) != i:
+            yield (
+                f"joint_sets[{i}].seed = {one.seed} is that of joint_sets[{k}]: their spacings "
+                "scatter alike"
+            )
+
+
 def _arrival(scene: RockMass, pulse: Wave | PlaneLoad, place: np.ndarray) -> float:
     """Return the time when a wave or load first reaches a place in intact rock, s."""
     if isinstance(pulse, Wave):
@@ -262,4 +273,5 @@ RULES = (
     _of_parts,
     _of_starts,
     _of_dashpots,
+    _of_seeds,
 )

@@ -1,7 +1,8 @@
 """The points of sweeps and ensembles: a scene at every value of some keys.
 
 Values are given as `--sweep KEY=FROM:TO:COUNT`, `KEY=log:FROM:TO:COUNT` or `KEY=A,B,C`. Member n of
-an ensemble adds n - 1 to the seed of random joints, in a rock mass to that of each joint set.
+an ensemble adds n - 1 to the seed of random joints; in a rock mass n - 1 times the number of seeds
+from the least to the largest of its sets, so that no member repeats a set of another.
 """
 
 import json
@@ -116,7 +117,8 @@ def _seeds(scene: AnyScene, number: int) -> dict[str, int]:
     for i, one in enumerate(scene.joint_sets):
         if one.seed is not None:
             found[f"joint_sets.{i}.seed"] = one.seed
-    return {key: seed + number - 1 for key, seed in found.items()}
+    span = 1 + max(found.values(), default=0) - min(found.values(), default=0)
+    return {key: seed + (number - 1) * span for key, seed in found.items()}
 
 
 def axes(given: list[str], fixed: list[str]) -> dict[str, list[Any]]:

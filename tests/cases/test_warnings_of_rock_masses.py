@@ -14,6 +14,7 @@ SETS = [
     {"name": name, "dip": dip, "spacing": 2.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     for name, dip in (("a", 0.0), ("b", 90.0))
 ]
+ALIKE = [one | {"scatter": 0.1, "seed": 3} for one in SETS]
 PRESSURE = {"kind": "pressure", "side": "left", "shape": "step", "amplitude": 1e5}
 FORCE = {"kind": "force", "quantity": "force", "shape": "step", "amplitude": 1e5}
 FORCE |= {"at": [10.0, 5.0], "direction": [1.0, 0.0]}
@@ -33,6 +34,7 @@ FORCE |= {"at": [10.0, 5.0], "direction": [1.0, 0.0]}
             {"joint_sets__0__damping_ratio": 0.1},
             "joint_sets[0].damping_ratio = 0.1 takes half of the",
         ),
+        ({"joint_sets": ALIKE}, "joint_sets[1].seed = 3 is that of joint_sets[0]: their spacings"),
         ({"joint_sets": SETS}, "the joint sets give 4.17 rigid blocks"),
         ({"joint_sets": [SETS[0] | {"maximum_closure": 1e-5}]}, "waves[0]: joints that close"),
     ],
