@@ -125,15 +125,16 @@ def _of_wavelength(scene: RockMass) -> Iterator[str]:
 
 def _block_size(scene: RockMass) -> float | None:
     """Return the length of the largest block of a file, m, the root of its area or volume, or of
-    the blocks of the joint sets: the domain's size unless two sets (three in space) cut it, or one
-    that all waves cross at right angles. None if no joints have a spacing: rigid blocks then need a
-    given size."""
-    spacings = sorted(one.spacing for one in scene.joint_sets if one.spacing)
-    if not spacings:
+    the blocks of the joint sets: the spacings, and the domain's size along what none of them cuts
+    unless all waves cross one set at right angles. None if no joints have a spacing: rigid blocks
+    then need a given size."""
+    sets = [one for one in scene.joint_sets if one.spacing]
+    spacings = sorted(one.spacing for one in sets if one.spacing)
+    if not sets:
         return None
-    size, dim = float(scene.domain.extent.max()), scene.domain.dimension
     if scene.domain.blocks is not None:
-        return float(blocks_of_scene(scene).volume.max() ** (1 / dim))
+        return float(blocks_of_scene(scene).volume.max() ** (1 / scene.domain.dimension))
+    size, corners = float(scene.domain.extent.max()), np.array(scene.domain.corners)
     waves = plane_waves(scene)
     if len(scene.joint_sets) == 1 and waves is not None:
         along = scene.joint_sets[0].frame[1:]
@@ -141,9 +142,12 @@ def _block_size(scene: RockMass) -> float | None:
             # Under shear, blocks rotate that are as wide as the periodic domain.
             turned = any(np.abs(along @ motion).max() > GRAZING for _, motion in waves.values())
             wide = turned and bool(scene.boundaries.sides("periodic"))
-            width = float(np.ptp(scene.domain.corners @ along.T, axis=0).max()) if wide else 0.0
+            width = float(np.ptp(corners @ along.T, axis=0).max()) if wide else 0.0
             return min(max(spacings[0], width), size)
-    return min(spacings[dim - 1], size) if len(spacings) >= dim else size
+    _, cut, axes = np.linalg.svd(np.array([one.normal for one in sets]))
+    rank = int((cut > GRAZING).sum())
+    uncut = np.ptp(corners @ axes[rank:].T, axis=0).max(initial=0.0)
+    return min(max(spacings[rank - 1], float(uncut)), size)
 
 
 def plane_waves(scene: RockMass) -> dict[str, tuple[np.ndarray, np.ndarray]] | None:

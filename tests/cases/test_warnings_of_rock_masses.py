@@ -58,6 +58,16 @@ def test_a_wave_across_one_set_is_measured_by_its_spacing(mass):
     assert len(warnings(mass(joint_sets=[fine], waves__0__direction=[0.6, 0.8]))) == 1
 
 
+@pytest.mark.parametrize("thickness", [0.8, 1.0])
+def test_a_wall_is_measured_by_its_thickness_where_no_set_cuts_it(thickness, rock_with):
+    """However long it is."""
+    bricks = [one | {"spacing": 0.5, "dip_direction": 90.0} for one in SETS]
+    struck = PRESSURE | {"shape": "ricker", "period": 0.005}
+    wall = rock_with(*bricks, domain={"size": [40.0, thickness, 3.0]}, loads=[struck])
+    expected = f"{SHORTEST / thickness:.3g} rigid blocks per wavelength"
+    assert (expected in "".join(warnings(wall))) == (SHORTEST / thickness < 10)
+
+
 PERIODIC = {"left": "periodic", "right": "periodic", "bottom": "fixed"}
 SHAKEN = {"kind": "base", "side": "bottom", "quantity": "velocity", "shape": "ricker"}
 SHAKEN |= {"amplitude": 0.1, "period": 0.005, "direction": [0.0, 1.0]}
