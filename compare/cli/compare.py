@@ -1,6 +1,7 @@
 """`jointwave compare`: verdicts and misfits; `jointwave report`: the same as a page."""
 
 import json
+from contextlib import nullcontext
 from functools import partial
 from typing import Any
 
@@ -55,15 +56,16 @@ def compare(asked: Compare) -> None:
         show_forecasts(runs, asked.as_json, parts)
         return
     found = []
-    for one in scenes:
-        with terminal.progress(one.name or one.title) as tell:
-            if shows_all:
-                options = tell, asked.align, asked.spectral, folder
-                found.append(comparison.compare(one, curves, *options))
-            else:
-                found.append(comparison.solved(one, deciding(one), tell, folder))
-    if asked.out is not None:
-        tables.write_comparisons(found, asked.out)
+    with nullcontext() if asked.out is None else locked(asked.out):
+        for one in scenes:
+            with terminal.progress(one.name or one.title) as tell:
+                if shows_all:
+                    options = tell, asked.align, asked.spectral, folder
+                    found.append(comparison.compare(one, curves, *options))
+                else:
+                    found.append(comparison.solved(one, deciding(one), tell, folder))
+        if asked.out is not None:
+            tables.write_comparisons(found, asked.out)
     show_comparisons(found, asked.every, asked.as_json, asked.reads)
 
 

@@ -22,6 +22,7 @@ BAD = [
     (("run", SCENE, "--model", "joints"), "--model: joints: must be one of jointed, equivalent, "),
     (("run", SCENE, *NO_TENSION), "tension"),
     (("run", SCENE, *SHORT, "--out", "taken.pdf"), "taken.pdf: is a file, must be a folder"),
+    (("compare", SCENE, "--out", "taken.pdf"), "taken.pdf: is a file, must be a folder"),
     (("explain", SCENE, "--bogus"), "--bogus"),
     (("animate", SCENE, "--out", "wave.avi"), "--out: wave.avi: must end in .mp4 or .gif"),
     (("animate", SCENE, "--out", "taken.mp4"), "is not a result and would be overwritten"),
