@@ -34,7 +34,9 @@ ACROSS = "NE XY RT LT 12"
 AXIS_OF = {word: axis for axis, words in DIRECTIONS.items() for word in words.split()}
 ENDING = rf"{'|'.join(AXIS_OF)}|(?<=[bdehms][hln])[12]"
 CHANNEL = re.compile(rf"((?:.*[\W_])?[a-z]{{0,2}})({ENDING})", re.IGNORECASE)
+MOTION = re.compile(r"[\W_]+(velocity|acceleration|displacement)$", re.IGNORECASE)
 log = logging.getLogger("jointwave")
+SLOW = 0.05  # s between samples of a file without unit above which its times are doubted
 MOST_SAMPLES = 4_000_000  # of an uneven recording, resampled at its smallest interval
 
 
@@ -89,7 +91,8 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         found = selected(columns, every if choice.is_time else choice, spelled)
         if not found:
             raise ValueError(f"has no column {choice.column or choice.label!r}")
-        channels = iter(_channels([one.name.removeprefix("-") for at, one in found if not at]))
+        names = (one.name.removeprefix("-") for at, one in found if not at)
+        channels = iter(_channels([MOTION.sub("", name) for name in names]))
         waves: dict[Where, np.ndarray] = {}
         for place, column in found:
             if not place and "@" in column.name:
@@ -103,6 +106,10 @@ def _of_file(text: str, quantity: str) -> xr.Dataset:
         if directed and (left := [f"{at[0]} of {at[2]}" for at in waves if not at[1]]):
             log.warning("warning: %s: left out beside components: %s", choice.path, ", ".join(left))
             waves = directed
+        step = float(np.median(np.diff(time.values)))
+        if not time.unit and step > SLOW:
+            doubt = f"its times have no unit: steps of {step:g} s look like milliseconds"
+            log.warning("warning: %s: %s", choice.path, doubt)
         return dataset_of(time.si(TIME), waves)
     except (OSError, ValueError, MemoryError) as error:
         if isinstance(error, SceneError):
@@ -124,9 +131,8 @@ def _channels(names: list[str]) -> list[tuple[str, str]]:
 
 def _measured(column: Column, quantity: str) -> str:
     """Return the quantity of a column without a place: by its name or unit, else `quantity`."""
-    name = re.match(r"-?([a-z]*)", column.name.lower())
-    if name and name[1] in UNITS:
-        return name[1]
+    if said := [word for word in re.findall("[a-z]+", column.name.lower()) if word in UNITS]:
+        return said[-1]
     if not column.unit or column.unit in UNITS[quantity]:
         return quantity
     return next((one for one in MEASURED if column.unit in UNITS[one]), quantity)

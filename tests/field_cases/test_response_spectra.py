@@ -104,7 +104,7 @@ def test_peaks_and_intensities_of_an_acceleration(files):
         found = read(files["two.txt"]).sum().item()
         assert found == pytest.approx(read(velocity).item(), rel=2e-4)
     text = files["two.txt"].read_text()
-    for one, other in (("HHE", "HHZ"), ("Vel NS", "Vel EW"), ("Tran", "Long")):
+    for one, other in (("HHE", "HHZ"), ("Vel NS", "Vel EW"), ("Tran", "Radial Acceleration")):
         header = text.replace("acceleration_x@7", one).replace("acceleration_y@7", other)
         files["two.txt"].write_text(header)  # directions of one recorder
         assert jw.ppv(files["two.txt"]).item() == pytest.approx(jw.ppv(velocity).item(), rel=2e-4)
@@ -116,15 +116,22 @@ def test_peaks_and_intensities_of_an_acceleration(files):
     assert jw.ppv(ramp, "acceleration").item() == pytest.approx(1.5)
 
 
-def test_the_name_of_a_column_tells_its_quantity(tmp_path):
-    """Stress is no velocity, and a unit that is not read is not taken for SI."""
+def test_the_name_of_a_column_tells_its_quantity(tmp_path, caplog):
+    """Stress is no velocity, a unit that is not read is not taken for SI, and one of time that is
+    not there is said."""
     path = tmp_path / "one.csv"
-    path.write_text("time,Acceleration\n0,0\n1,3\n")
-    assert jw.ppv(path).item() == pytest.approx(1.5)
+    for name in ("Acceleration", "Radial acceleration"):
+        path.write_text(f"time [s],{name}\n0,0\n1,3\n")
+        assert jw.ppv(path).item() == pytest.approx(1.5)
     for name, words in (("stress", "must be recorded"), ("velocity@4 mm", "must be as velocity_x")):
-        path.write_text(f"time,{name}\n0,0\n1,3\n")
+        path.write_text(f"time [s],{name}\n0,0\n1,3\n")
         with pytest.raises(SceneError, match=words):
             jw.ppv(path)
+    assert not caplog.messages
+    path.write_text("time,velocity\n0,0\n1,3\n2,0\n")
+    jw.arias(path)
+    (line,) = caplog.messages
+    assert line.endswith("one.csv: its times have no unit: steps of 1 s look like milliseconds")
 
 
 def test_a_channel_beside_components_is_left_out(tmp_path, caplog):
