@@ -16,7 +16,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.cases.size import spoken
 from jointwave.compare.cli.commands import Explain
 from jointwave.compare.cli.inputs import load
-from jointwave.compare.cli.terminal import print_json, say, show_facts
+from jointwave.compare.cli.terminal import print_json, progress, say, show_facts
 from jointwave.compare.engines import ENGINES, in_words, label_of, solver
 from jointwave.compare.misfit.ranking import NOT_CHECKED, Reference, applicable, reference_of
 from jointwave.compare.readings.entering_wave import entering_waves
@@ -58,7 +58,8 @@ Facts = dict[str, Any]
 def explain(asked: Explain) -> None:
     """Print the facts of a scene."""
     for scene in load(asked, every=False):
-        found = explanation(scene)
+        with progress(f"explain {scene.title}"):
+            found = explanation(scene)
         print_json(found) if asked.as_json else show_explanation(found, asked.every)
 
 

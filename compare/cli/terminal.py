@@ -46,6 +46,7 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
         raise SceneError(EVERY, "", None, f"must be a number of seconds, not {every!r}")
     log, handler = logging.getLogger("jointwave"), logging.StreamHandler(sys.stderr)
     handler.setFormatter(logging.Formatter("jointwave: %(message)s"))
+    handler.addFilter(_once())
     before = log.level
     if float(every):
         log.addHandler(handler)
@@ -61,6 +62,18 @@ def progress(label: str) -> Iterator[Callable[[float], None]]:
     finally:
         log.setLevel(before)
         log.removeHandler(handler)
+
+
+def _once() -> Callable[[logging.LogRecord], bool]:
+    """Return a filter that passes each message once."""
+    passed: set[str] = set()
+
+    def is_new(record: logging.LogRecord) -> bool:
+        count = len(passed)
+        passed.add(record.getMessage())
+        return len(passed) > count
+
+    return is_new
 
 
 def _lines(label: str, every: float) -> Callable[[float], None]:

@@ -66,7 +66,7 @@ def test_progress_says_what_is_done_and_how_long_it_will_take():
 
 def test_a_pipe_gets_a_line_now_and_then():
     """On standard error only, with the progress so far; none remains after the work has ended, and
-    nothing reaches it of what is soon done."""
+    nothing reaches it of what is soon done, but what engines say, once."""
     done = piped(SLOW + "sleep(0.3)", JOINTWAVE_PROGRESS="0.1")
     assert done.stdout == ""
     lines = done.stderr.splitlines()
@@ -76,6 +76,9 @@ def test_a_pipe_gets_a_line_now_and_then():
     assert shares == sorted(shares) and shares[0] < 100
     done = piped(SLOW)
     assert done.stdout == done.stderr == ""
+    logged = "import logging" + 2 * "; logging.getLogger('jointwave').warning('a coarse mesh')"
+    done = piped(SLOW.replace("sleep(0.05)", logged, 1))
+    assert done.stderr == "jointwave: a coarse mesh\n"
 
 
 @pytest.mark.parametrize("close", ["sys.stderr.close()", "os.close(2)"])
