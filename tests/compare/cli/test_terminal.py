@@ -77,7 +77,7 @@ def test_a_pipe_gets_a_line_now_and_then():
     done = piped(SLOW)
     assert done.stdout == done.stderr == ""
     logged = "import logging" + 2 * "; logging.getLogger('jointwave').warning('a coarse mesh')"
-    done = piped(SLOW.replace("sleep(0.05)", logged, 1))
+    done = piped(SLOW.replace("sleep(0.05)", logged), JOINTWAVE_PROGRESS="30")
     assert done.stderr == "jointwave: a coarse mesh\n"
 
 
