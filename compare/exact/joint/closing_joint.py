@@ -28,7 +28,7 @@ from jointwave.cases.schema.scene import Scene
 from jointwave.compare.exact.bar.images import entering
 from jointwave.compare.exact.conditions import holds
 from jointwave.compare.exact.joint.one_joint import back_in_time, behind_and_before
-from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of
+from jointwave.compare.exact.joint.trajectory import Trajectory, edges_of, peak_of, too_stiff
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 
 HELD = ("closure", "prestress", "soft layers", "stiff layers")
@@ -78,9 +78,12 @@ def applies(scene: Scene) -> Answer:
         return answer
     joint, times = the_joint(scene, p), sample_times(scene)
     most = np.abs(entering(scene).value(times)).max()
-    if joint.compliance(joint.prestress + most) <= 0:
-        return Answer("the joint becomes stiffer than the other joints")
-    return back_in_time(scene, joint.y, p.bar_speed)
+    least = float(joint.compliance(joint.prestress + most))
+    answer = Answer.unless(
+        (least <= 0, "the joint becomes stiffer than the other joints"),
+        too_stiff(least, p.impedance, scene.time.duration),
+    )
+    return answer and back_in_time(scene, joint.y, p.bar_speed)
 
 
 def solve(scene: Scene) -> xr.Dataset:

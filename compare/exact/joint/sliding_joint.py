@@ -29,6 +29,7 @@ from jointwave.compare.exact.conditions import LAYERS, holds
 from jointwave.compare.exact.joint import rate_state_joint
 from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.joint.slip_phases import TOLERANCES, Passed, SlipJoint
+from jointwave.compare.exact.joint.trajectory import too_stiff
 from jointwave.compare.exact.linear import bound
 from jointwave.compare.solvers.record import Answer, Kind, Rock, Solver, thin
 from jointwave.results.dataset import dataset
@@ -61,6 +62,9 @@ def applies(scene: Scene) -> Answer:
         ),
         (bool(compliance[~slips].any()), "a joint that cannot slip differs in stiffness"),
         (bool((compliance < 0).any()), "the joint is stiffer than the others"),
+        too_stiff(
+            float(compliance[slips].max(initial=0.0)), p.shear_impedance, scene.time.duration
+        ),
         (snaps, "friction falls with slip faster than the joint unloads"),
         (
             p.dilation is not None and bool(compliance.any() or p.excess_compliance.any()),

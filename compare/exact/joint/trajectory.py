@@ -11,6 +11,14 @@ from jointwave.cases.histories import LoadHistory
 
 SAMPLES = 2001  # of a load, to find its peak
 SHORTEST = 1e-12  # s, shortest interval of integration
+MOST = 2e5  # time constants of a joint, which take a minute to integrate
+
+
+def too_stiff(compliance: float, impedance: float, duration: float) -> tuple[bool, str]:
+    """Return whether a joint of a compliance 1/K (m/Pa; 0 if rigid) takes too long to integrate
+    over a duration (s) in rock of an impedance Z (Pa s/m), and the reason, for `Answer.unless`."""
+    times = 2 * duration / (compliance * impedance) if compliance > 0 else 0.0
+    return times > MOST, f"the joint is too stiff: the scene lasts {times:.2g} times its Z / 2K"
 
 
 def edges_of(load: LoadHistory, end: float) -> list[float]:

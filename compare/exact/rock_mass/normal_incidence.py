@@ -24,7 +24,7 @@ from jointwave.compare.exact.joint import closing_joint, slip_phases
 from jointwave.compare.exact.joint.closing_joint import ClosingJoint
 from jointwave.compare.exact.joint.one_joint import around
 from jointwave.compare.exact.joint.slip_phases import Pressed, SlipJoint
-from jointwave.compare.exact.joint.trajectory import peak_of
+from jointwave.compare.exact.joint.trajectory import peak_of, too_stiff
 from jointwave.compare.exact.linear import bound
 from jointwave.compare.exact.plane.waves import PlaneMotion
 from jointwave.compare.exact.rock_mass import stack_waves
@@ -38,7 +38,6 @@ SLIPS = ("friction_angle", "cohesion", "residual_cohesion", *WEAKENS.keys)
 BESIDE = 2e-9  # m
 ROUND_OFF = 1e-11  # over the largest value of a waveform
 SHEARED = 1e-9  # shear along a joint over the prestress that is neglected
-MOST = 2e5  # time constants of a joint, which take a minute to integrate
 LINEAR = np.inf  # m, maximum closure of a linear joint
 
 
@@ -55,9 +54,8 @@ def applies(scene: RockMass) -> Answer:
     normal = stack_of(scene).normal
     oblique = not all(along(np.array(one.direction), normal) for one in scene.waves)
     ways = {np.sign(normal @ one.direction) for one in scene.waves}
-    stiff = max((_time_constants(scene, one) for one in scene.waves), default=0.0)
     answer = Answer.unless(
-        (stiff > MOST, f"the joint is too stiff: the scene lasts {stiff:.2g} times its Z / 2K"),
+        *(_too_stiff(scene, one) for one in scene.waves),
         (any(one.damping_ratio for one in sets), "the joint is damped"),
         (oblique, "a wave is not one at normal incidence"),
         (len(waves) < len(scene.waves), "several waves are of one kind"),
@@ -66,12 +64,11 @@ def applies(scene: RockMass) -> Answer:
     return answer and _slips_as_known(scene, sets[0]) if "S" in waves else answer
 
 
-def _time_constants(scene: RockMass, wave: Wave) -> float:
-    """Return the duration over Z / 2K of the joint that a wave makes stiffen or slip."""
-    one, along_front = scene.joint_sets[0], wave.kind == "S"
-    K = one.shear_stiffness if along_front else one.maximum_closure and one.normal_stiffness
-    met = plane_wave(scene, wave)
-    return 2 * (K or 0.0) * scene.time.duration / (float(met.rock.density) * met.speed)
+def _too_stiff(scene: RockMass, wave: Wave) -> tuple[bool, str]:
+    """Return `too_stiff` of the joint that a wave makes stiffen or slip."""
+    one, met = scene.joint_sets[0], plane_wave(scene, wave)
+    K = one.shear_stiffness if wave.kind == "S" else one.maximum_closure and one.normal_stiffness
+    return too_stiff(1 / K if K else 0.0, float(met.rock.density) * met.speed, scene.time.duration)
 
 
 def _slips_as_known(scene: RockMass, one: JointSet) -> Answer:

@@ -182,6 +182,8 @@ NO = {
         (PRESSED | {"soft_layers": [DILATES | {"spacing_stiffness": 4.375e8}]},
          "the joint that dilates is softer than the others"),
         (SHEAR | {"soft_layers": SOFT_SHEAR}, "a joint that cannot slip differs in stiffness"),
+        (SHEAR | {"soft_layers": [SLIPS[0] | {"shear_stiffness": 3.0719e9}]} | RIGID,
+         "the joint is too stiff: the scene lasts 1.2e+07 times its Z / 2K"),
         (SHEAR | {"soft_layers": STIFF_SLIPS} | RIGID, "the joint is stiffer than the others"),
     ],
     "sliding-block": [
