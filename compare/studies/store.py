@@ -69,8 +69,10 @@ def _parallel(
     count: int, work: Callable[[P], T], points: Mapping[str, P]
 ) -> Iterator[tuple[str, T]]:
     """Yield named results in order of completion."""
-    # joblib warns when it replaces a worker that uses too much memory; no point is lost.
-    warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
+    # joblib warns when it replaces a worker that uses too much memory, which loses no point, and
+    # when it is interrupted.
+    for message in ("A worker stopped while some jobs", r"\d+ tasks which were still being"):
+        warnings.filterwarnings("ignore", message, UserWarning)
     run = Parallel(
         count, return_as="generator_unordered", pre_dispatch=count, batch_size=1, max_nbytes=None
     )
