@@ -66,11 +66,15 @@ def warn(
     strict: bool = False,
     of: Callable[[AnyScene], Iterable[str]] = scene_warnings,
 ) -> None:
-    """Print the warnings of scenes, each line once.
+    """Print the warnings of scenes, each line once, after the first of several variants it is of.
 
     strict : raise them as one SceneError instead. of : returns the lines of a scene.
     """
-    lines = list(dict.fromkeys(line for scene in scenes for line in of(scene)))
+    said: dict[str, str] = {}
+    for scene in scenes:
+        for line in of(scene):
+            said.setdefault(line, scene.name if len(scenes) > 1 else "")
+    lines = [f"{name}: {line}" if name else line for line, name in said.items()]
     if strict and lines:
         where, why = scenes[0].where, "(an error by --strict)"
         raise all_of(SceneError(where, "", None, f"{line} {why}") for line in lines)

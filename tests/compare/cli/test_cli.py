@@ -105,12 +105,18 @@ def test_explain_says_what_segments_are_and_transmit(pillar):
 
 
 def test_a_result_holds_what_was_warned_of(jointwave):
-    """Each variant its own; a line that several say is printed once, on standard error."""
+    """Each variant its own; a line that several say is printed once, on standard error, and one of
+    a later variant alone behind its name."""
     late = ("--set", "load.period=0.03", "--set", "joints.damping_ratio=0.02", *SHORT)
     (line,) = jointwave("run", "guo-li-2002/fig-09", *late, "--out", "out").err.splitlines()
     for folder in ("out", "out/no tension"):
         (kept,) = json.loads(xr.load_dataset(f"{folder}/dem.nc").attrs["warnings"])
         assert line == f"jointwave: warning: {kept}" and kept.startswith("load.period = 0.03 s")
+    jointwave("new", "two", "--from", "guo-li-2002/fig-09")
+    with Path("two.toml").open("a") as file:
+        file.write('\n[[variants]]\nname = "late"\nload.period = 0.04\n')
+    said = jointwave("run", "two.toml", "--dry-run", *SHORT).err
+    assert "jointwave: warning: late: load.period = 0.04 s" in said
 
 
 def test_run_tells_what_broke(jointwave, facts):
