@@ -26,11 +26,12 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.material.calibrate import calibrate
 from jointwave.cases.material.constant_q import mechanisms_of
 from jointwave.cases.scene_type import pillar_of
-from jointwave.compare.readings.attenuation import known_places, waveforms
+from jointwave.compare.readings.attenuation import known_places, wave_speed, waveforms
 from jointwave.compare.readings.recordings import Recording, sampling, variables
 from jointwave.compare.scenes import AnySource, load
 
 HEARD = 1e-3  # least amplitude of a frequency that is used, over the largest
+ALIASED = 0.95  # of the frequency at which neighbouring receivers are half a wavelength apart
 FINER = 64  # wavenumbers per width of a peak
 
 
@@ -42,7 +43,8 @@ def dispersion(
 
     Frequencies have at least a thousandth of the largest amplitude. Wavenumbers (1/m) reach half a
     wave between the two nearest receivers, and are negative for waves towards the first receiver.
-    Raises SceneError if receivers are not on a line.
+    The speed is nan at frequencies at which the wave, by its delay at the last receiver, has larger
+    wavenumbers than these. Raises SceneError if receivers are not on a line.
     """
     row = waveforms(result, quantity, axis)
     x, spectra = _along(known_places(row)), np.fft.rfft(row.values)
@@ -61,6 +63,8 @@ def dispersion(
     peak, coherence = k[i] + shift * (k[1] - k[0]), top - (left - right) * shift / 4
     with np.errstate(divide="ignore"):  # k = 0: in phase everywhere
         speed = 2 * np.pi * frequency / peak
+    passing = abs(wave_speed(result, quantity=quantity, axis=axis))
+    speed[2 * np.pi * frequency > ALIASED * highest * passing] = np.nan
     named = {
         "phase_speed": (speed, "phase speed", "m/s"),
         "coherence": (coherence, "share of the motion in one wave", "1"),

@@ -21,7 +21,6 @@ from jointwave.compare.readings.dispersion import dispersion, dispersion_theory
 
 LEAST = 3  # receivers of a row
 HEARD = 0.03  # least amplitude of drawn frequencies, over the largest at the first receiver
-ALIASED = 0.95  # of the frequency at which neighbouring receivers are half a wavelength apart
 NAMES = TRANSFER, SPEED, LOSS = "transfer function", "phase speed (m/s)", "1/Q"
 #: The solution whose model each theory has; the theory takes its line style.
 THEORY = {
@@ -86,11 +85,8 @@ def curves_of(comparison: Comparison) -> Curves:
 def _measured(result: xr.Dataset, row: xr.DataArray) -> dict[str, pd.Series]:
     """Return one result's curves at frequencies present at the first receiver; row : velocities."""
     first, transfer = np.abs(np.fft.rfft(row[0].values)), abs(attenuation.transfer_function(result))
-    speed, nearest = dispersion(result).phase_speed, row["distance"].diff("receiver").min()
-    apart = abs(attenuation.wave_speed(result)) / (2 * float(nearest))
-    speed = speed[speed.frequency.values < ALIASED * apart]
     heard = (first > HEARD * first.max()) & (transfer.frequency.values > 0)
-    every = transfer, speed, 1 / attenuation.quality_factor(result).quality
+    every = transfer, dispersion(result).phase_speed, 1 / attenuation.quality_factor(result).quality
     found = (pd.Series(one.values, one.frequency.values) for one in every)
     series = (one.reindex(transfer.frequency.values[heard]).dropna() for one in found)
     return dict(zip(NAMES, series, strict=True))

@@ -83,6 +83,15 @@ def test_a_bar_has_its_speed_and_what_comes_back_a_negative_one(bar):
     assert found.phase_speed.values == pytest.approx(-speed, rel=2e-6)
 
 
+def test_a_row_tells_no_speed_of_waves_shorter_than_two_of_its_spacings(bar):
+    """Every fifth receiver: from 0.95 c / 10 m on; at 150 Hz it read -3 c, all in one wave."""
+    found = dispersion(bar[0].isel(velocity_y=slice(None, None, 5)))
+    long, short = found.frequency < 0.094 * bar[1], found.frequency > 0.096 * bar[1]
+    told = found.phase_speed[long & (found.frequency > 50)]
+    assert told.values == pytest.approx(bar[1], rel=1e-3)
+    assert short.any() and np.isnan(found.phase_speed[short]).all()
+
+
 def test_a_wave_that_meets_two_receivers_at_once_is_infinitely_fast_along_them():
     t = np.linspace(0.0, 0.2, 201)
     both = np.tile(np.exp(-(((t - 0.05) / 0.008) ** 2)), (2, 1))
