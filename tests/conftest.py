@@ -159,19 +159,23 @@ def pillar():
 
 @pytest.fixture
 def plain(monkeypatch):
-    """Let blocks take their steps as plain Python, on one thread: nothing is compiled."""
+    """Let both engines take their steps as plain Python, on one thread: nothing is compiled."""
+    from jointwave.continuum.stepping import balance, explicit
+    from jointwave.continuum.stepping import leapfrog as rock
     from jointwave.dem.kernel import leapfrog, loop
 
-    loop_for = leapfrog.loop_for
+    def in_python(kernel_for):
+        return lambda *flags: getattr(kernel_for(*flags), "__wrapped__", kernel_for(*flags))
 
-    def in_python(form):
-        kernel = loop_for(form)
-        return getattr(kernel, "__wrapped__", kernel)
-
-    monkeypatch.setattr(leapfrog, "loop_for", in_python)
-    monkeypatch.setattr(loop, "flush_denormals", lambda: 0)
-    monkeypatch.setattr(loop, "restore_denormals", lambda old: None)
-    monkeypatch.setattr(loop, "borrowed", lambda values: values)
+    for module, name in (
+        *((leapfrog, "loop_for"), (rock, "leapfrog_for")),
+        *((balance, "forces_for"), (balance, "tangents_for")),
+    ):
+        monkeypatch.setattr(module, name, in_python(getattr(module, name)))
+    for module in (loop, explicit):
+        monkeypatch.setattr(module, "flush_denormals", lambda: 0)
+        monkeypatch.setattr(module, "restore_denormals", lambda old: None)
+        monkeypatch.setattr(module, "borrowed", lambda values: values)
 
 
 @pytest.fixture(scope="session")

@@ -32,7 +32,11 @@ KINDS = {
         "load": {"shape": "sine", "amplitude": 0.1, "period": 1e-3, "quantity": "velocity"},
     },
     SLIDES: {"joints": SLIP},
-    DAMPED: {"joints": SLIP | {"damping_ratio": 0.05}, "prestress": {"normal": 1e5}},
+    DAMPED: {
+        "joints": SLIP | {"damping_ratio": 0.05},
+        "prestress": {"normal": 1e5},
+        "time__duration": 1.2e-3,
+    },
 }
 SIMPLEX = {"cell": "simplex", "scheme": "explicit", "order": 1}
 
@@ -45,12 +49,14 @@ SIMPLEX = {"cell": "simplex", "scheme": "explicit", "order": 1}
         (QUIET, "jointed", 3, SIMPLEX),
         (SHAKEN, "equivalent", 1, {}),
         (SLIDES, "jointed", 3, {}),
-        (DAMPED, "jointed", 3, {}),
+        (DAMPED, "jointed", 2, {}),
     ],
 )
-def test_the_ledger_closes_to_round_off(short, kind, model, dim, numerics):
+def test_the_ledger_closes_to_round_off(short, kind, model, dim, numerics, request):
     """Where every force is linear, and where joints slide: friction books the mean of the spring
     force before and after the step, which closes."""
+    if kind == DAMPED:  # no other test has its kernel
+        request.getfixturevalue("plain")
     given = dict(KINDS[kind])
     for key in {"load", "gravity"} & given.keys():
         given[key] = given[key] | {"direction": oblique(dim)}

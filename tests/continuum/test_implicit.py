@@ -34,7 +34,7 @@ def pushed(dim, dt, eta=None, held=False):
 
 @pytest.mark.parametrize("rho", [0.0, 0.5, 0.9, 1.0])
 @pytest.mark.parametrize(("dim", "eta", "held"), [(1, None, False), (2, 0.1, True)])
-def test_a_linear_run_is_the_exact_discrete_response(dim, eta, held, rho):
+def test_a_linear_run_is_the_exact_discrete_response(dim, eta, held, rho, plain):
     """Every mode under a load of noise, a hundred steps; dashpots in proportion to springs."""
     own = pushed(dim, STEP, eta, held)
     steps = Implicit(own, STEP, 1, rho)

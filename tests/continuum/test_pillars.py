@@ -111,7 +111,7 @@ def test_standing_rock_carries_the_weight_above(short, dim, keys, places):
 
 
 @pytest.mark.parametrize("g", [0.0, 1e-10])
-def test_a_prestress_in_balance_stays(short, g):
+def test_a_prestress_in_balance_stays(short, g, plain):
     """Joints without tension that bear it stand still, also under a weight of its last digits."""
     ends = {"start": "quiet", "end": "fixed" if g else "quiet"}
     gravity = {"direction": [0.0, 1.0, 0.0], "acceleration": g} if g else None
@@ -122,7 +122,7 @@ def test_a_prestress_in_balance_stays(short, g):
     assert np.abs(result["velocity"]).max() < 1e-15
 
 
-def test_rock_too_stiff_for_the_digits_of_its_sway_is_refused_as_that(short):
+def test_rock_too_stiff_for_the_digits_of_its_sway_is_refused_as_that(short, plain):
     """Its joints hold: a column that leans by 0.002 of its weight, 0.08 of its width off centre."""
     scene = short(
         **STILL,

@@ -32,7 +32,9 @@ def shaken(rock_mass, scheme):
 
 @pytest.mark.parametrize("scheme", ["explicit", "implicit"])
 @pytest.mark.parametrize("kind", ["slip", *PILLARS])
-def test_an_interrupted_run_goes_on_to_the_same_bits(rock_mass, short, keeper_at, scheme, kind):
+def test_an_interrupted_run_goes_on_to_the_same_bits(
+    rock_mass, short, keeper_at, scheme, kind, plain
+):
     scene = shaken(rock_mass, scheme)
     if kind in PILLARS:
         scene = short({"scheme": scheme}, **PILLARS[kind])
@@ -45,7 +47,7 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(rock_mass, short, keeper_at
     assert simulate(scene, keeper=keeper).equals(whole)
 
 
-def test_nothing_beyond_the_bounds_is_kept_where_no_ledger_is(short):
+def test_nothing_beyond_the_bounds_is_kept_where_no_ledger_is(short, plain):
     """Above the critical step motion grows by a third in every step, of hundreds between looks."""
     own = {"scheme": "explicit", "step_fraction": 1.01, "allow_unstable": True}
 

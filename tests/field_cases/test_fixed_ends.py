@@ -65,7 +65,7 @@ def test_motion_at_a_wall_is_the_walls(across):
 
 @pytest.mark.parametrize("solver", ENGINES)
 @pytest.mark.parametrize("across", [False, True])
-def test_static_deflection_on_a_wall(solver, across, request):
+def test_static_deflection_on_a_wall(solver, across, plain):
     """Weight rho g y over the rock, and the joints between: none at the wall. Along the axis, and
     across it without rotation.
 
@@ -76,8 +76,6 @@ def test_static_deflection_on_a_wall(solver, across, request):
         "gravity": {"direction": [1.0, 0.0, 0.0] if across else [0.0, 1.0, 0.0]},
         "record": {"stress": [5.0], "velocity": [0.25]},
     }  # fmt: skip
-    if not across:  # no other test has its kernel
-        request.getfixturevalue("plain")
     scene = load(PILLAR, changes=changes)
     p, u = calibrate(scene), simulate(scene, solver).displacement.values[0, 0]
     own = p.own_shear_stiffness if across else p.own_stiffness

@@ -57,9 +57,6 @@ def rock(beds, walls, changes):
 
 
 EACH = [(name, engine) for name in RUNS for engine in ENGINES]
-#: The kernel of all of these laws takes long to compile: steps of blocks are plain Python, of rock
-#: only where slow tests run.
-EACH[1] = pytest.param(*EACH[1], marks=pytest.mark.slow)
 
 
 @pytest.mark.parametrize(("name", "engine"), EACH)

@@ -107,15 +107,18 @@ def off_chain(run):
     return relative_l2(run.result["displacement"].values[..., 0], exact)
 
 
+#: Few steps of blocks, which are plain Python: little else has their kernels.
 LOOSE = {"joints.tension": False, "time.duration": 0.03}
 SLOW = [("continuum-jointed", "explicit"), ("continuum-jointed", "implicit")]
 EVERY = [one for one in JOINTED if one[1] != "fourth-order"]  # force evaluation has a sample
 
 
 @pytest.mark.parametrize(("engine", "scheme"), marked(EVERY, SLOW))
-def test_prestress_of_just_the_largest_tension_leaves_every_joint_closed(engine, scheme):
+def test_prestress_of_just_the_largest_tension_leaves_every_joint_closed(engine, scheme, request):
     """The elastic pillar under the same prestress, p, gives that tension; there the traction of
     tension-free joints is zero, to round-off, and they behave like elastic ones."""
+    if engine == "dem":
+        request.getfixturevalue("plain")
     run = HardRun(engine, scheme, LOOSE)
     dt = 0.5 * run.critical
     clock = {"step": 0.5, "record__interval": dt, "record__velocity": []}
@@ -130,8 +133,10 @@ def test_prestress_of_just_the_largest_tension_leaves_every_joint_closed(engine,
 
 
 @pytest.mark.parametrize(("engine", "scheme"), marked(JOINTED, SLOW[1:]))
-def test_gaps_of_1e_40_m_open_and_close_like_large_ones(engine, scheme):
+def test_gaps_of_1e_40_m_open_and_close_like_large_ones(engine, scheme, request):
     """Tension-free joints have no scale: a load smaller by a power of two gives the same digits."""
+    if engine == "dem":
+        request.getfixturevalue("plain")
     run, small = HardRun(engine, scheme, LOOSE), 2.0**-99
     one, other = (run.run(load__amplitude=a)["stress"].values for a in (1.0, small))
     assert np.array_equal(other / small, one)

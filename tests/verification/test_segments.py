@@ -88,6 +88,7 @@ def test_bars_reflect_and_pass_and_layers_ring(bars, solution, bound):
 #: What [rock] of the pillar says already, in other words.
 SAME = {"density": 2400.0, "p_speed": 2200.0, "s_speed": 800.0, "intact_modulus": 8.64e10}
 JOINTED = {"joints__damping_ratio": 0.02, "time__duration": 0.03, "ends__end": "matched"}
+JOINTED["soft_layers"] = [{"y": 25.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.02}]
 
 
 @pytest.mark.parametrize(
@@ -161,21 +162,19 @@ def test_soft_layers_take_the_nearest_joint(pillar):
 
 
 @pytest.mark.parametrize(
-    ("engine", "exact", "bounds"),
+    ("engine", "exact"),
     [
-        ("dem", "lattice", (5e-4, 5e-4)),
-        ("continuum-jointed", "jointed-bar", (5e-4, 5e-4)),
-        ("continuum-equivalent", "equivalent-bar", (2e-3, 5e-4)),
+        ("dem", "lattice"),
+        ("continuum-jointed", "jointed-bar"),
+        ("continuum-equivalent", "equivalent-bar"),
     ],
 )
-def test_engines_meet_their_exact_solutions(pillar, bars, engine, exact, bounds):
-    """Joints at random; and jointed rock between bars, with damped joints in the specimen and a
-    soft one where the bar meets it."""
+def test_engines_meet_their_exact_solutions(bars, engine, exact):
+    """Jointed rock between bars, with damped joints in the specimen and a soft one where the bar
+    meets it; a shipped scene has joints at random."""
     specimen = {"y": [4.0, 4.6], "block": 0.05, "density": 2650.0, "intact_modulus": 6e10}
     specimen |= {"normal_stiffness": 5e11, "damping_ratio": 0.05}
     segments = [bar([0.0, 4.0], STEEL), specimen, bar([4.6, 8.6], STEEL)]
     layers = [{"y": 4.0, "normal_stiffness": 4e11, "damping_ratio": 0.1}]
     between = bars(STEEL, GRANITE, STEEL, segments=segments, soft_layers=layers)
-    scenes = scattered(pillar, joints__damping_ratio=0.05), between
-    for scene, bound in zip(scenes, bounds, strict=True):
-        assert misfit(solve(engine, scene), solve(exact, scene)) < bound
+    assert misfit(solve(engine, between), solve(exact, between)) < 5e-4
