@@ -67,7 +67,9 @@ def plan_of(
     found = body_of(scene, model, rock, dim)
     if found.scripted or scene.mesh_path is not None:
         cells = compat.cell_corners(found.body.mesh), *map(found.of_cells, ("stiffness", "density"))
-        for line in of_coarse_cells(scene, found.scripted, *cells):
+        what = "the mesh" if model == "jointed" else "the mesh of homogenised rock"
+        what = "rock of a script" if found.scripted else what
+        for line in of_coarse_cells(scene, what, *cells):
             log.warning(line)
     for line in of_stiff_elements(found):
         log.warning(line)

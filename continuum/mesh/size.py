@@ -92,13 +92,13 @@ def body_bytes(nodes: float, components: int, order: int, dim: int) -> float:
 
 
 def of_coarse_cells(
-    scene: AnyScene, scripted: bool, corners: np.ndarray, moduli: np.ndarray, density: np.ndarray
+    scene: AnyScene, what: str, corners: np.ndarray, moduli: np.ndarray, density: np.ndarray
 ) -> Iterator[str]:
     """Warn of cells, of a file or with a script's rock, too large for the shortest wave: S waves at
     the highest frequency, or axial waves in an axial pillar, along the axes of its receivers.
 
-    corners : of cells [cells, n, d], m. moduli : stiffness of their rock in Voigt's form
-    [cells, n, n], Pa. density : [cells], kg/m3.
+    what : the mesh or the rock, in words. corners : of cells [cells, n, d], m. moduli : stiffness
+    of their rock in Voigt's form [cells, n, n], Pa. density : [cells], kg/m3.
     """
     frequency = highest_frequency(scene)
     if frequency is None:
@@ -114,7 +114,7 @@ def of_coarse_cells(
     nodes = scene.numerics.continuum.order * wave / size.max(axis=1)
     worst = int(nodes.argmin())
     place = placed(corners[worst].mean(axis=0), 4)
-    gives = f"{'rock of a script' if scripted else 'the mesh'}: elements at {place} have"
+    gives = f"{what}: elements at {place} have"
     where = f"nodes per wavelength at {frequency:.4g} Hz, below which 95 % of the energy lies"
     remedy = ""
     if not scene.is_column:
