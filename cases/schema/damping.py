@@ -32,8 +32,8 @@ class Attenuating(Table):
     quality_factor: Annotated[float, Field(ge=5, le=1e5)] | None = None
     #: Hz, at which the moduli give the wave speeds; absent: 1 / shortest period
     reference_frequency: Positive | None = None
-    #: Hz, band of constant Q, within 4 %; absent: 0.1 to 10 times 1 / period of every load and
-    #: wave, or of reference_frequency without any, and up or down to reference_frequency
+    #: Hz, band of constant Q, within 4 %; absent: from 0.1 to 10 times reference_frequency and 1 /
+    #: period of every load and wave
     quality_band: Annotated[list[Positive], Two] | None = None
 
     @model_validator(mode="after")
@@ -55,13 +55,12 @@ class Attenuating(Table):
         if at is None:
             allowed = "is required with rock.quality_factor: no load or wave has a period"
             raise contradiction("rock.reference_frequency", None, allowed)
-        own = own or [at]
-        low, high = self.quality_band or (min(at, *(x / 10 for x in own)), max(at, 10 * max(own)))
+        low, high = self.quality_band or (min([at, *own]) / 10, 10 * max([at, *own]))
         if not low <= at <= high:
             allowed = f"must include the reference frequency, {at:.6g} Hz"
             raise contradiction("rock.quality_band", self.quality_band, allowed)
-        if high > WIDEST * low:
-            allowed = f"must be given: {low:.4g} to {high:.4g} Hz is wider than {WIDEST:,.0f}"
+        if high > 100 * WIDEST * low:
+            allowed = f"must be given: {low:.4g} to {high:.4g} Hz is too wide"
             raise contradiction("rock.quality_band", None, allowed)
         return at, low, high
 

@@ -120,11 +120,9 @@ def test_what_makes_no_rock_is_refused_in_one_line(pillar, changes, key, message
 
 @pytest.mark.parametrize(
     ("load", "reference", "band"),
-    [(STEP, 100.0, (10.0, 1000.0)), ({}, None, (10.0, 1000.0)), ({}, 1.0, (1.0, 1000.0))],
+    [(STEP, 100.0, (10.0, 1000.0)), ({}, None, (10.0, 1000.0)), ({}, 1.0, (0.1, 1000.0))],
 )
-def test_the_band_is_a_decade_on_either_side_of_the_load_and_holds_the_reference(
-    pillar, load, reference, band
-):
+def test_the_band_is_a_decade_on_either_side_of_load_and_reference(pillar, load, reference, band):
     rock = {"rock__quality_factor": 20.0, "rock__reference_frequency": reference}
     scene = pillar(**load, **rock)
     assert scene.rock.quality_frequencies(scene.pulses) == (reference or 100.0, *band)
