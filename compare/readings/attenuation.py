@@ -119,7 +119,9 @@ def quality_factor(
     heard = np.abs(first) > HEARD * np.abs(first).max()
     heard[0] = False
     omega, ratio = 2 * np.pi * frequency.values[heard], last[heard] / first[heard]
-    lag = omega * late - np.angle(ratio * np.exp(1j * omega * late))  # to half a turn of `late`
+    turned = np.unwrap(np.angle(ratio * np.exp(1j * omega * late)))
+    loudest = turned[np.abs(first * last)[heard].argmax()] if heard.any() else 0.0
+    lag = omega * late - turned + 2 * np.pi * np.round(loudest / (2 * np.pi))  # half a turn there
     loss = -np.log(np.abs(ratio))
     with np.errstate(divide="ignore"):  # without any loss
         quality = lag / (2 * loss)

@@ -137,6 +137,21 @@ def test_rock_of_a_quality_factor_attenuates_as_its_theory(column):
     assert found.phase_speed.values == pytest.approx(theory.phase_speed.values, rel=1e-4)
 
 
+def test_phases_are_followed_over_more_than_a_turn():
+    """Rock of Q = 8 over 400 m, ten waves: speeds at 20 to 90 Hz differ by 6 %, and the phase of
+    the slowest lags behind the loudest by more than half a turn."""
+    time, gamma = 1e-4 * np.arange(2**14), np.arctan(1 / 8) / np.pi
+    s = 2j * np.pi * np.fft.rfftfreq(len(time), 1e-4)[1:]
+    arg = (np.pi * (time - 0.03) / 0.02) ** 2
+    first, k = (1 - 2 * arg) * np.exp(-arg), s / (2000.0 * (s / (100 * np.pi)) ** gamma)
+    last = np.fft.irfft(np.append(0.0, np.fft.rfft(first)[1:] * np.exp(-k * 400.0)))
+    found = quality_factor((time, [first, last], [0.0, 400.0])).sel(frequency=slice(20, 90))
+    k = np.interp(found.frequency.values, s.imag / (2 * np.pi), k.imag)
+    exact = 2 * np.pi * found.frequency.values / k
+    assert found.phase_speed.values == pytest.approx(exact, rel=1e-4)
+    assert found.quality.values == pytest.approx(8.0, rel=0.01)
+
+
 def test_damping_by_mass_attenuates_as_its_theory(column):
     """By alpha / 2 c at every frequency of a long wave: in a bar k^2 = (omega^2 - i alpha omega) /
     c^2."""
