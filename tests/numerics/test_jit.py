@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections import Counter
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -138,7 +139,7 @@ jit.compile_for = told
 import jointwave
 
 short = {"variants": [], "pillar.length": 4.0, "time.duration": 1e-3, "record.stress": [2.0],
-         "record.velocity": [2.0]}
+         "record.velocity": [2.0], "record.energy": False}
 implicit = {"numerics.continuum.scheme": "implicit"}
 for engine, changes in (("dem", {}), ("continuum-jointed", {}), ("continuum-jointed", implicit)):
     jointwave.simulate(jointwave.load("guo-li-2002/fig-03", "", short | changes), engine)
@@ -156,14 +157,17 @@ for name, changes in (("guo-li-2002/fig-03", short | inclined),
 
 @pytest.fixture
 def start(tmp_path):
-    """Start a program that runs engines, whose cache of kernels is empty at first; the first one
-    compiles the sources of Python too, later ones load their bytecode."""
+    """Start a program that runs engines from a copy of the sources, whose cache of kernels is empty
+    at first; the first one compiles the sources of Python too, later ones load their bytecode."""
+    tree, alone = tmp_path / "sources", shutil.ignore_patterns("__pycache__")
+    for name in ("", "cases", "compare", "results", *PACKAGES):
+        part = Path(import_module(f"jointwave.{name}".strip(".")).__file__).parent
+        shutil.copytree(part, tree / "jointwave" / name, ignore=alone, dirs_exist_ok=True)
     usual = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fenics"
     usual.mkdir(parents=True, exist_ok=True)
     (tmp_path / "fenics").symlink_to(usual)  # forms are compiled as ever
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
-    environment["PYTHONPYCACHEPREFIX"] = str(tmp_path / "bytecode")
-    for name in ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE"):
+    environment = {**os.environ, "PYTHONPATH": str(tree), "XDG_CACHE_HOME": str(tmp_path)}
+    for name in ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX"):
         environment.pop(name, None)
 
     def started(program=PROGRAM):
