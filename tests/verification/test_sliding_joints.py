@@ -170,11 +170,9 @@ def test_one_joint_in_the_plane(engine, rock, bound, law):
 
 
 @pytest.mark.parametrize("simulate", [dem.simulate, bar], ids=["blocks", "rock"])
-def test_a_static_state_is_that_of_mu_0(simulate, request):
+def test_a_static_state_is_that_of_mu_0(simulate, plain):
     """A pillar that hangs sideways from its end, 0.53 MPa of shear at the joint: the state is that
     of Coulomb's friction, to the last bit, and contacts 10,000 s old then hold it."""
-    if simulate is dem.simulate:  # no other test has its kernels
-        request.getfixturevalue("plain")
     changes = {
         "pillar.block": 2.5,
         "record.velocity": [36.25],
