@@ -157,9 +157,12 @@ def save(
     drawn = Drawn(name, title, folder)
     if table is not None:
         write_csv(drawn.file("csv"), table, DIGITS)
+    with matplotlib.rc_context(RC):
+        if (layout := figure.get_layout_engine()) is not None:
+            layout.execute(figure)  # here, once: matplotlib would draw each format twice
+        figure.set_layout_engine(None)
     for path in drawn.drawings[: 3 if png else 2]:
         write_drawing(path, figure, title)
-        figure.set_layout_engine("none")  # the first has laid it out
     return drawn
 
 
