@@ -167,7 +167,8 @@ def static_state(result: xr.Dataset) -> xr.Dataset:
     if _has_static_state(result):
         return first
     stress = float(result.attrs.get("prestress", 0.0))
-    return first.map(lambda of: xr.full_like(of, stress if of.name == "stress" else 0.0))
+    values = {k: np.full(x.shape, stress if k == "stress" else 0.0) for k, x in first.items()}
+    return first.copy(data=values)
 
 
 def _has_static_state(result: xr.Dataset) -> bool:
