@@ -98,17 +98,16 @@ class Motion:
         if period is not None:
             self.pulse = (period * LOAD_STEP, SETTLED * load.end)
         joints, count = system.one_sided, len(system.one_sided)
-        self.at_rest = system.initial[joints]
+        self.at_rest, self.resists = system.initial[joints], system.resists[joints]
         self.closed, self.changed = self.at_rest >= 0, np.zeros(count, int)
         self.zero = np.zeros((2, count), dtype=bool)
         self._drop_open_joints()
 
     def _drop_open_joints(self) -> None:
         """Remove the forces of open joints from the equations of motion."""
-        system, held = self.system, np.ones(len(self.system.initial))
-        held[system.one_sided[~self.closed]] = 0.0
-        self.pushed = csr_array(system.moves.multiply(held)) @ system.resists
-        self.steady = system.steady - system.moves @ ((1 - held) * system.initial)
+        system, self.held = self.system, np.ones(len(self.system.initial))
+        self.held[system.one_sided[~self.closed]] = 0.0
+        self.steady = system.steady - system.moves @ ((1 - self.held) * system.initial)
 
     def to(self, start: float, end: float) -> None:
         """Advance from `start` to `end` (s), between which the load is smooth."""
@@ -160,28 +159,28 @@ class Motion:
         blocks that move together."""
         if not len(self.closed):
             return self.matrix @ x
-        return self.system.free @ x + self.pushed @ (self.system.strains @ x)
+        forces = self.system.resists @ (self.system.strains @ x)
+        return self.system.free @ x + self.system.moves @ (self.held * forces)
 
     def _first_event(self, X: np.ndarray) -> tuple[float, tuple[int, int] | None]:
         """Return the fraction of the step at the first change of a joint, the joint and force."""
         system, count = self.system, len(self.system.initial)
         if not len(system.one_sided):
             return 1.0, None
-        strains, resists = system.strains @ X.T, system.resists[system.one_sided]
-        springs = resists[:, :count] @ strains[:count]
-        forces = np.array([springs.T, (resists @ strains).T])
+        strains = system.strains @ X.T
+        springs = self.resists[:, :count] @ strains[:count]
+        forces = np.array([springs.T, (self.resists @ strains).T])
         forces[:, 0] += self.at_rest
         forces[:, 0][self.zero] = 0.0
-        bounds = _BERNSTEIN @ forces  # [2, ORDER + 1, joints]
-        stays = np.where(
-            self.closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0)
-        )
         best, event = 1.0, None
-        for i in np.flatnonzero(~stays):
+        for i in np.flatnonzero(~_stay(_BERNSTEIN @ forces, self.closed)):
             least = LEAST if self.changed[i] > 1 else 0.0
-            now = self.closed[i]
-            crosses = (bounds[:, :, i].min(axis=1) < 0) & (bounds[:, :, i].max(axis=1) > 0)
-            found = _first_change(forces[:, :, i], crosses, now, least, best)
+            own, now = forces[:, :, i], self.closed[i]
+            bounds = own * best ** np.arange(ORDER + 1) @ _BERNSTEIN.T
+            if _stay(bounds, now):  # until the first event so far
+                continue
+            crosses = (bounds.min(axis=1) < 0) & (bounds.max(axis=1) > 0)
+            found = _first_change(own, crosses, now, least, best)
             if found is not None and (found[0] < best or event is None):
                 best, event = found[0], (int(i), found[1])
         return best, event
@@ -198,6 +197,12 @@ class Motion:
             self.zero[kind, i] = True
             self.events += 1
             self._drop_open_joints()
+
+
+def _stay(bounds: np.ndarray, closed: np.ndarray) -> np.ndarray:
+    """Return whether joints stay closed or open, from the Bernstein coefficients of the forces of
+    their spring, and of spring and dashpot [2, ORDER + 1, ...]."""
+    return np.where(closed, (bounds >= 0).all(axis=(0, 1)), (bounds <= 0).all(axis=1).any(axis=0))
 
 
 def _first_change(
