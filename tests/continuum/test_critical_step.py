@@ -16,8 +16,10 @@ from jointwave.continuum.stepping.critical import critical_step
 from jointwave.continuum.stepping.scaling import OF_ALL, OF_PIECE, scaled_mass
 
 DAMPED = {"joints__damping_ratio": 0.05}
-BARELY = {"joints__damping_ratio": 1e-4}  # 0.1 % of what the ends take
-LAYER = {"soft_layers": [{"y": 2.0, "spacing_stiffness": 4.375e8, "damping_ratio": 0.1}]}
+SOFT = {"y": 2.0, "spacing_stiffness": 4.375e8}
+LAYER = {"soft_layers": [SOFT | {"damping_ratio": 0.1}]}
+#: 0.1 % of what the ends take; a layer so that the kernel is that of others.
+BARELY = {"joints__damping_ratio": 1e-4, "soft_layers": [SOFT | {"damping_ratio": 1e-4}]}
 ABSORBS = {"ends__start": "quiet", "ends__end": "matched"}
 #: Model, dimension, keys and numerics; four blocks of a bar, two in the plane and in space.
 KINDS = {
