@@ -58,13 +58,15 @@ def test_explain_knows_steps_and_references(jointwave):
         assert slow == pytest.approx((2600 * (1 / shear + 1 / 8e9)) ** -0.5)
 
 
-def test_it_is_shown_by_both_engines_and_its_waveforms_are_drawn_but_no_map(jointwave):
+def test_it_is_shown_by_both_engines_and_its_waveforms_and_a_section_are_drawn(jointwave):
     said = jointwave("view", "column.toml", "--out", "a.png", *FIELDS).out
     assert said.startswith("a.png: rigid blocks and jointed rock")
     assert jointwave("figure", "column.toml", "--out", "a.svg").out == "wrote a.svg\n"
     jointwave("run", "column.toml", "--engine", "continuum", "--out", "out", *FIELDS)
-    error = jointwave("picture", "out", code=2).err
-    assert error.endswith("is of bodies in the plane: animate and view show a scene in space\n")
+    said = jointwave("picture", "out", "--map", "speed", "--section", "x=0.5").out
+    assert said == "wrote out-speed.png\n"
+    error = jointwave("picture", "column.toml", "--section", "x=0.5", code=2).err
+    assert "--section: is of results: `jointwave run column.toml --set record.fields" in error
     assert "would run" in jointwave("report", "column.toml", "--dry-run").out
 
 
