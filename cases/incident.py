@@ -33,6 +33,7 @@ COMPONENT = {
     3: np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]]),
 }
 AT_ONCE = 16  # points whose tractions are computed together, to stay in the cache
+ALIKE = 1e-9  # difference, in samples, of times that are sampled
 BEYOND = 20  # samples on either side of the requested times
 WITHIN = 1e-6  # shift from a domain's corner into the rock, over the distance to the centre
 
@@ -166,6 +167,9 @@ class FaceTractions(NamedTuple):
         from scipy.interpolate import CubicSpline
 
         dt = self.times[1] - self.times[0]
+        places = (times - self.times[0]) / dt
+        if np.abs(places - (there := np.rint(places))).max(initial=0.0) < ALIKE:
+            return of(self.values[there.astype(int)])  # many times faster
         low = max(int((times[0] - self.times[0]) / dt) - BEYOND, 0)
         high = int((times[-1] - self.times[0]) / dt) + BEYOND + 2
         window = slice(low, max(high, low + 4))
