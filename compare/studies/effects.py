@@ -116,7 +116,7 @@ class Effects(Experiment):
     def rows(self, pool: Pool | None = None, progress: Progress | None = None) -> list[Any]:
         """Return the rows of all effects of each point."""
         with alone():
-            missing = self.missing()
+            missing = sorted(self.missing(), key=lambda one: -len(active_effects(one[0][1])))
             runs = replace(self, points=missing, folder=None).measured(pool)
             rows = dict(zip(map(key, missing), runs, strict=True))
             costs = replace(self, measure=lambda point: timed(point, rows[key(point)]))
