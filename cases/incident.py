@@ -168,8 +168,10 @@ class FaceTractions(NamedTuple):
 
         dt = self.times[1] - self.times[0]
         places = (times - self.times[0]) / dt
-        if np.abs(places - (there := np.rint(places))).max(initial=0.0) < ALIKE:
-            return of(self.values[there.astype(int)])  # many times faster
+        there = np.rint(places).astype(int)
+        sampled = (np.abs(places - there) < ALIKE) & (there >= 0) & (there < len(self.values))
+        if sampled.all():
+            return of(self.values[there])  # many times faster
         low = max(int((times[0] - self.times[0]) / dt) - BEYOND, 0)
         high = int((times[-1] - self.times[0]) / dt) + BEYOND + 2
         window = slice(low, max(high, low + 4))

@@ -107,4 +107,5 @@ def test_mistakes_are_told_in_one_line(made):
         made(*thirds, continuum={"cell": "quadrilateral"})
     near = [{"dip": 0.0, "through": [1.0, y]} for y in (2.0, 2.0 + 1e-7)]
     with pytest.raises(SceneError, match=r"edges shorter than 6e-07 m .* nearly meet, near \["):
-        made(*near, continuum={"cell": "triangle"})
+        domain = {"size": [6.0, 4.0], "least_width": 1e-8}
+        made(*near, domain=domain, continuum={"cell": "triangle"})
