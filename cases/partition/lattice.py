@@ -91,9 +91,11 @@ def further_sets(scene: RockMass) -> list[JointSet]:
 def thin_layers(scene: RockMass) -> Iterator[tuple[str, float]]:
     """Yield regions too thin to be cut in triangles or tetrahedra, and their thickness, m: their
     blocks have no Poisson effect."""
+    if (block := scene.numerics.dem.block) is None:
+        return
     dim, corners = scene.domain.dimension, np.array(scene.domain.corners)
     for own, place, regions in _places(scene):
-        least, groups = LAYER * (scene.numerics.dem.block or 0.0), by_direction(own.joint_sets)
+        least, groups = LAYER * block, by_direction(own.joint_sets)
         axes = [*_across(groups, dim), *(x[0].normal for x in groups if not place.holds(x))]
         for axis in axes if len(groups) < 2 and not squared(own) else ():
             if (thickness := place.extent(axis)) <= least < np.ptp(corners @ axis):
