@@ -16,11 +16,11 @@ from jointwave.cases.geometry.periodic import Across, contacts_across
 from jointwave.cases.geometry.pieces import without_slivers
 from jointwave.cases.geometry.sets import cut_by_sets
 from jointwave.cases.geometry.solids import check_convex, cut_into_regions, taken_out
-from jointwave.cases.partition.joints import bounded, plane_sets
+from jointwave.cases.partition.joints import ROCK, bounded, plane_sets
 from jointwave.cases.partition.shape import SIDES, Shape, shape_of
 from jointwave.cases.schema.domain import Domain
 from jointwave.cases.schema.joint import JointSet
-from jointwave.cases.schema.rock_mass import Region, RockMass
+from jointwave.cases.schema.rock_mass import REST, Region, RockMass
 from jointwave.cases.size import excess
 
 #: Default least width of a block over the least spacing, or over the domain's size without one.
@@ -103,8 +103,13 @@ def blocks_of_scene(scene: RockMass, further: Sequence[JointSet] = ()) -> Blocks
         key = f"joint_sets[{index}].spacing"
         if further:
             key, spacing = "numerics.dem.block", scene.numerics.dem.block
-        gives = f"gives about {size / OF_BLOCK[scene.domain.dimension]:,.0f} blocks, which"
-        raise SceneError(scene.where, key, spacing, f"{gives} {why}")
+        gives = f"gives about {size / OF_BLOCK[scene.domain.dimension]:,.0f} blocks"
+        if scene.regions:
+            every, names = [*scene.joint_sets, *further], [*(x.name for x in scene.regions), REST]
+            name = names[int(np.argmax(block_counts(scene.domain, every, scene.regions)))]
+            least = min(x.spacing or inf for x in every if not x.regions or name in x.regions)
+            gives += f", most of them in region '{name}', cut {least:.3g} m apart"
+        raise SceneError(scene.where, key, spacing, f"{gives}, which {why}")
     try:
         found = blocks_of_domain(scene.domain, scene.joint_sets, further, scene.regions)
         across_periodic(scene, found)  # checks that periodic sides match
@@ -125,14 +130,31 @@ def across_periodic(scene: RockMass, blocks: Blocks) -> list[Across]:
     ]
 
 
-def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
-    """Return the approximate number of blocks: one plus the joints and the crossings of two or
-    three of them, ignoring openings and ends of joints."""
+def block_count(domain: Domain, sets: Sequence[JointSet], regions: Sequence[Region] = ()) -> float:
+    """Return the approximate number of blocks of a domain."""
+    return float(block_counts(domain, sets, regions).sum())
+
+
+def block_counts(
+    domain: Domain, sets: Sequence[JointSet], regions: Sequence[Region] = ()
+) -> np.ndarray:
+    """Return the approximate number of blocks in each region, then in the rest: one plus the joints
+    and the crossings of two or three of them, ignoring openings and ends of joints."""
     if domain.given is not None:
-        return float(domain.given.count)
-    corners, dim, count = np.array(domain.corners), domain.dimension, 1.0
-    volume = cell_moments(shape_of(domain).hull).size[0]
-    normals = [one.normal for one in sets]
+        return np.array([float(domain.given.count)])
+    rock = rock_of(shape_of(domain), regions)
+    volumes, counts = cell_moments(rock).size, np.zeros(len(regions) + 1)
+    for k, name in enumerate([*(one.name for one in regions), REST]):
+        cells = rock.region == (k if k < len(regions) else ROCK)
+        if cells.any():
+            corners = rock.vertices[np.unique(rock.corners(rock.beside(cells))[:, 1])]
+            own = [one for one in sets if not one.regions or name in one.regions]
+            counts[k] = _count(corners, volumes[cells].sum(), own)
+    return counts
+
+
+def _count(corners: np.ndarray, volume: float, sets: Sequence[JointSet]) -> float:
+    dim, count, normals = corners.shape[1], 1.0, [one.normal for one in sets]
     joints = [
         float(np.ptp(corners @ normal)) / one.spacing if one.spacing else 1.0
         for normal, one in zip(normals, sets, strict=True)
@@ -152,4 +174,4 @@ def block_count(domain: Domain, sets: Sequence[JointSet]) -> float:
 def partition_bytes(scene: RockMass, further: Sequence[JointSet] = ()) -> float:
     """Return the memory for cutting the blocks of a rock mass, bytes."""
     each = OF_BLOCK[scene.domain.dimension]
-    return each * block_count(scene.domain, [*scene.joint_sets, *further])
+    return each * block_count(scene.domain, [*scene.joint_sets, *further], scene.regions)

@@ -9,7 +9,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.locate import contact_at
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.partition.lattice import further_sets
-from jointwave.cases.partition.scene import blocks_of_scene
+from jointwave.cases.partition.scene import OF_BLOCK, blocks_of_scene, partition_bytes
 from tests.cases.partition.polygons import width
 
 BOX = (6.0, 5.0, 4.0)
@@ -127,6 +127,19 @@ def test_joints_without_a_lattice_and_too_many_blocks_are_refused(scene, keys):
     assert "\n" not in str(caught.value)
     with pytest.raises(SceneError, match=r"numerics\.dem\.block = 1e-05: gives about"):
         cut(scene(block=1e-5))
+
+
+def test_blocks_are_counted_in_each_region(scene, monkeypatch):
+    """Planes of one region cross none of another's; a refusal names the region that forces it."""
+    monkeypatch.setenv("JOINTWAVE_MEMORY", "1")
+    for layer in (0.3, 0.9):
+        own = scene(poisson=0.25, layer=layer)
+        count, bound = cut(own).count, partition_bytes(own, further_sets(own)) / OF_BLOCK[2]
+        assert count < bound < 2 * count
+    bedding = {"dip": 0.0, "spacing": 1e-3, "through": [0.0, 1.5], "regions": ["1.5"]}
+    words = r"block = 1\.0: gives .* blocks, most of them in region '1\.5', cut 0\.001 m apart,"
+    with pytest.raises(SceneError, match=words):
+        cut(scene(bedding, poisson=0.25, layer=0.9))
 
 
 def test_slivers_of_a_lattice_are_joined_along_joints_not_across_them(scene):
