@@ -151,7 +151,8 @@ def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[
     and the scene as JSON, last because of its length.
 
     folder : of a file of blocks or a mesh, if any. starts : "unloaded", "prestressed" or "at rest
-    under gravity". prestress : in every section of a pillar, Pa, if any; in a rock mass it is in
+    under gravity". peak_load : the largest stress of a load or wave, Pa, unless from a file.
+    prestress : in every section of a pillar, Pa, if any; in a rock mass it is in
     the stress of the first sample.
     """
     text, pressed = scene.model_dump_json(), getattr(scene.prestress, "normal", None)
@@ -159,6 +160,7 @@ def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[
     if scene.gravity is not None and scene.gravity.static:
         starts = "at rest under gravity"
     file = getattr(getattr(scene, "domain", None), "mesh_path", None)
+    given = [one for one in scene.pulses if "stress" in one.quantity and one.file is None]
     return {
         "engine": engine,
         "kind": scene.kind,
@@ -166,6 +168,7 @@ def attributes_of(scene: AnyScene, engine: str, own: Mapping[str, Any]) -> dict[
         "variant": scene.name,
         "scene_hash": scene_hash(scene, text),
         "starts": starts,
+        "peak_load": max((abs(one.amplitude) for one in given), default=0.0),
         **({} if file is None else {"folder": str(file.resolve().parent)}),
         **({} if pressed is None else {"prestress": pressed}),
         "effects": json.dumps(active_effects(scene)),

@@ -112,6 +112,16 @@ def test_a_bound_of_one_quantity_or_peak(run, of, bound, says):
         result.stdout.fnmatch_lines([f"*dem ~ lattice: {of}*: {says}*"])
 
 
+def test_no_bound_is_met_at_rest(run):
+    """A block that the load pulls off a pillar without tension leaves nothing to compare: zero in
+    the exact chain, a millionth of the load in jointed rock."""
+    text = scene("dem ~ continuum-jointed").replace("s_speed", "intact_modulus = 8.64e10\ns_speed")
+    text = text.replace("[load]", "[joints]\ntension = false\n[load]").replace("1.0e6", "-1.0e6")
+    result = run(scene=text + '"dem ~ no-tension-chain" = 1.0\n')
+    result.assert_outcomes(failed=2)
+    result.stdout.fnmatch_lines(2 * ["* ~ *: nothing moves at the receivers in either solution"])
+
+
 def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):
     """As `--strict` does; a scene that says what it means is neither."""
     late = scene().replace("period = 0.01", "period = 0.011")

@@ -3,6 +3,7 @@
 import json
 from contextlib import nullcontext
 from functools import partial
+from math import isnan
 from typing import Any
 
 from jointwave.cases.errors import SceneError
@@ -23,6 +24,7 @@ from jointwave.compare.runs import comparison
 from jointwave.compare.runs.checkpoint.lock import locked
 from jointwave.compare.runs.reuse import ResultFolder
 from jointwave.compare.studies.sweep import Work, compare_scene
+from jointwave.compare.text import percent
 from jointwave.results.dataset import energy_residual, open_ledger
 
 WORST = "worst misfit (%)"
@@ -115,15 +117,21 @@ def _show_verdicts(found: list[Comparison], every: bool) -> None:
         _show_remarks(scores)
     distances = tables.distance_table(found)
     if GIVEN in distances.index.get_level_values(0):
-        given = distances.xs(GIVEN)
-        furthest = given["relative L2 (%)"].groupby(level=["variant", "pair"]).idxmax()
-        terminal.show_frame(given.loc[furthest, ["relative L2 (%)", "peak ratio"]])
+        given = distances.xs(GIVEN).dropna(subset="relative L2 (%)")
+        if len(given):
+            furthest = given["relative L2 (%)"].groupby(level=["variant", "pair"]).idxmax()
+            terminal.show_frame(given.loc[furthest, ["relative L2 (%)", "peak ratio"]])
     if not every and any(beside.shift for one in found for beside in one.besides):
         terminal.show_frame(tables.alignment_frame(found))
     for beside in found[0].besides:
         start, end = beside.time[0], beside.time[-1]
-        if end - start < WHOLE * scene.time.duration:
-            terminal.say(f"{beside.curves.name}: compared from {start:.4g} to {end:.4g} s only")
+        share, own = (end - start) / scene.time.duration, beside.curves.name
+        rows = [one for one in found[0].rows if one.pair.one == own]
+        still = dict.fromkeys(one.place.words for one in rows if isnan(one.distance.misfit))
+        if share < WHOLE or still:
+            line = f"{own}: compared from {start:.4g} to {end:.4g} s only, "
+            line += f"{percent(share, 2)} % of the scene"
+            terminal.say(line + f"; nothing moves until then: {', '.join(still)}" * bool(still))
     if not every:
         terminal.say(HINT, "dim")
 

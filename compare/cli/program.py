@@ -61,6 +61,9 @@ def run(arguments: list[str]) -> int:
     """Import the commands, run one and return its exit code."""
     from jointwave.compare.cli.commands import app
 
+    if (first := arguments[0]).endswith(".toml") or ("/" in first and first[0] != "-"):
+        allowed = f"a command comes first, such as jointwave compare {first}; jointwave lists them"
+        raise SceneError(first, "", None, allowed)
     code = app(arguments, standalone_mode=False)
     return code if isinstance(code, int) else 0
 

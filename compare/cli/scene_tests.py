@@ -13,7 +13,7 @@ from jointwave.cases.errors import SceneError, UnstableError
 from jointwave.compare.cli import SceneWarning
 from jointwave.compare.cli.inputs import scene_warnings
 from jointwave.compare.engines import applies, solve
-from jointwave.compare.misfit.differences import distance_of
+from jointwave.compare.misfit.differences import distance_of, static_difference
 from jointwave.compare.scenes import bound_of, load_variants
 from jointwave.results.dataset import scene_hash
 
@@ -77,6 +77,8 @@ class PairItem(pytest.Item):
         self.user_properties.append(("misfit", float(found.misfit)))
         if isnan(found.misfit) and found.place is None:
             raise Misfit(f"{self.key}: no receiver of the scene records it")
+        if found.place is None and static_difference(one, other).place is None:
+            raise Misfit(f"{self.key}: nothing moves at the receivers in either solution")
         if not found.misfit <= self.most:
             far = f"misfit {found.misfit:.3g} of {found.where} exceeds the bound {self.most:g}"
             command = ["compare", str(self.path), "--variant", self.scene.name, "--out", "misfit"]

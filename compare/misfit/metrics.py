@@ -21,6 +21,7 @@ from jointwave.results.labels import QUANTITIES, UNITS
 
 ALIKE = 1e-9  # tolerated difference of sample times, over the duration
 MORLET, FREQUENCIES = 6, 24  # omega_0 of the wavelet; number of frequencies of a transform
+SOFT = 1e5  # Pa s/m, impedance of soft soil
 JUDGED = 10.0  # smallest misfit that a reference resolves, over its own error
 
 
@@ -117,14 +118,18 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
 
     Left out are waveforms that are zero in both, or below a millionth of the largest motion in the
     reference unless the result moves there enough to decide; and all of them if both stay at rest,
-    with no stress changing by a millionth of the static one.
+    with no stress changing by a millionth of the load's or the static one.
     """
     until = other.attrs.get("known_until", np.inf)
     n = int(np.searchsorted(other["time"].values, until, side="right"))
     found = [(p, a[:n], b[:n]) for p, a, b in shared_waveforms(motion(one), motion(other))]
-    changed = [max(rms(a), rms(b)) for place, a, b in found if place.quantity in UNITS[0]]
+    sizes = [(place.quantity, max(rms(a), rms(b))) for place, a, b in found]
+    changed = [size for quantity, size in sizes if quantity in UNITS[0]]
+    moved = max((size for quantity, size in sizes if quantity in UNITS[1] + UNITS[3]), default=0.0)
     held = waveforms(static_state(other)) if _has_static_state(other) else {}
     still = [abs(float(v[0])) for place, v in held.items() if place.quantity in UNITS[0]]
+    if SOFT * moved < EXCITED * (load := other.attrs.get("peak_load", 0.0)):
+        still.append(load)  # else pieces fly off or turn, without stress
     if changed and max(changed) < EXCITED * max(still, default=0.0):
         return []
     weight = weigh([place for place, *_ in found], np.array([rms(b) for *_, b in found]))

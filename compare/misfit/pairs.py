@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
+from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from jointwave.compare.misfit.alignment import AlignedCurve, distance_at, motion
 from jointwave.compare.misfit.metrics import Distance, distance, motion, pairings, rms
 from jointwave.compare.misfit.places import Place, shown, waveforms
 from jointwave.compare.misfit.ranking import kind_of
-from jointwave.compare.misfit.weight import CARRIES, weigh
+from jointwave.compare.misfit.weight import CARRIES, FAINT, weigh
 from jointwave.compare.solvers.record import Kind
 from jointwave.results.labels import UNITS
 
@@ -133,7 +134,8 @@ def measure_curves(
     beside: AlignedCurve, results: dict[str, xr.Dataset], spectral: bool = False
 ) -> list[Row]:
     """Return the distances of a file's curves from every solution that has a waveform there. A row
-    is faint if the solution is not excited there, unless the curve moves enough to decide."""
+    is faint if the solution is not excited there, unless the curve moves enough to decide; its
+    distances are NaN if neither moves by 1 % of the solution's peak before the curve ends."""
     rows, time, own = [], beside.time, beside.curves.time
     for name, result in results.items():
         moved = {place: rms(wave) for place, wave in waveforms(motion(result)).items()}
@@ -147,6 +149,8 @@ def measure_curves(
             waves = np.interp(time, own, values), np.interp(time, result.time.values, ours)
             found, pair = distance_at(time, *waves, spectral), Pair(beside.curves.name, name, GIVEN)
             faint = rms(waves[0] - waves[1]) < still.get(place, 0.0)
+            if np.abs(waves).max() < FAINT * np.abs(ours).max():
+                found, faint = Distance(nan, nan, nan, nan), True
             rows.append(Row(pair, shown(place, result), found, faint=faint))
     return rows
 

@@ -5,6 +5,7 @@ import shutil
 import tempfile
 from collections.abc import Callable
 from errno import EIO
+from itertools import count
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -124,6 +125,20 @@ def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
             safe.isetitem(i, [csv_cell(value) for value in safe.iloc[:, i]])
     form = f"%.{digits}g"
     return write(path, lambda file: safe.to_csv(file, index=False, float_format=form))
+
+
+def write_beside(path: Path, table: pd.DataFrame) -> list[Path]:
+    """Write a table as `write_csv` does; one with other rows that it replaces is kept as NAME-1.csv
+    (or -2, ...), which is then the second file returned."""
+    old = path.read_bytes() if path.is_file() else b""
+    spare = next(x for k in count(1) if not (x := path.with_stem(f"{path.stem}-{k}")).exists())
+    if old:
+        create(spare, old)
+    write_csv(path, table)
+    if {*old.splitlines()} <= {*path.read_bytes().splitlines()}:
+        spare.unlink(missing_ok=True)
+        return [path]
+    return [path, spare]
 
 
 def csv_cell(value: object) -> object:

@@ -15,7 +15,7 @@ from jointwave.compare.figures.style import UNITS
 from jointwave.compare.figures.tables import SHOWN
 from jointwave.compare.misfit.metrics import Distance
 from jointwave.compare.misfit.places import Place
-from jointwave.compare.runs.output import write_csv, write_dataset
+from jointwave.compare.runs.output import write_beside, write_dataset
 from jointwave.compare.studies.experiment import Summary
 from jointwave.compare.studies.sweep_keys import MEMBER
 from jointwave.results.netcdf import load_netcdf
@@ -46,7 +46,7 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
     if done.empty:
         allowed = f"all {len(failed)} points fail: {failed.message.iloc[0]}"
         raise SceneError(scene, "", None, allowed)
-    files = [] if out is None else [write_csv(out / "sweep.csv", rows)]
+    files = [] if out is None else write_beside(out / "sweep.csv", rows)
     facts = {"rows": rows.to_dict("records")}
     by = "pair" if "pair" in done else "engine"
     shown, numbers, legend = done, list(NUMBERS[by]), "All numbers are in sweep.csv."
@@ -124,7 +124,7 @@ def write_ensemble(
 
     numbers : from `statistics`. done : rows of the members, with folders. keys : of the sweep.
     """
-    files = [write_csv(out / "ensemble.csv", numbers)]
+    files = write_beside(out / "ensemble.csv", numbers)
     others = [key for key in keys if key != MEMBER]
     for point, rows in done.groupby([*others, "variant"], sort=False):
         folders = [Path(folder) for folder in rows.folder.unique()]

@@ -1,6 +1,7 @@
 """One run at a time in a folder of results."""
 
 import fcntl
+import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -8,6 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from jointwave.cases.errors import SceneError
+
+log = logging.getLogger("jointwave")
 
 
 @contextmanager
@@ -45,10 +48,13 @@ def exclusive(folder: Path, wait: bool = False) -> Iterator[None]:
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            allowed = "another jointwave process is writing here; wait for it"
-            raise SceneError(str(folder), "", None, allowed) from None
+            if not wait:
+                allowed = "another jointwave process is writing here; wait for it"
+                raise SceneError(str(folder), "", None, allowed) from None
+            log.info("waiting for another process, which times runs and has locked %s", folder)
+            fcntl.flock(handle, fcntl.LOCK_EX)
         yield
     finally:
         os.close(handle)

@@ -14,6 +14,9 @@ TOO_LATE = "--time: must be greater than 0 and at most time.duration = 0.12 s, n
 OF_SPACE = "jointwave: --explode: is of a scene in space, not of"
 
 BAD = [
+    (("my-scene.toml", "--all"), "a command comes first, such as jointwave compare my-scene.toml;"),
+    ((SCENE,), f"a command comes first, such as jointwave compare {SCENE};"),
+    (("",), "No such command ''"),
     (("run",), "Missing argument"),
     (("run", "nothing.toml"), "nothing.toml: cannot be read: No such file"),
     (("run", SCENE, "--variant", "none"), "variants.name"),

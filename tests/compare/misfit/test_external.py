@@ -349,7 +349,10 @@ def test_command_reads_what_run_wrote(tmp_path, jointwave):
     assert "exact-lattice.nc ~ rigid blocks " in said and "compared from" not in said
     early = save(tmp_path / "short.csv", *2 * [np.linspace(0.0, 0.005, 9)])
     said = jointwave("compare", *short, "--no-spectral", "--with", early).out
-    assert "short.csv: compared from 0 to 0.005 s only" in said
+    line = (
+        "short.csv: compared from 0 to 0.005 s only, 25 % of the scene; nothing moves until then: "
+    )
+    assert f"{line}stress at 20 m\n" in said and "short.csv ~" not in said
 
 
 def test_what_symmetry_forbids_decides_nothing(one_joint, tmp_path):

@@ -1,12 +1,13 @@
 """Files are complete or absent, and the previous file survives a failure."""
 
+import pandas as pd
 import pytest
 import xarray as xr
 
 from jointwave.cases.errors import StoppedError
 from jointwave.compare.engines import solve
 from jointwave.compare.runs import jobs, run
-from jointwave.compare.runs.output import write, write_dataset, write_text
+from jointwave.compare.runs.output import write, write_beside, write_dataset, write_text
 
 
 def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):
@@ -20,6 +21,17 @@ def test_failed_write_leaves_the_old_file_and_no_other(tmp_path):
         write(path, half)
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_table_of_other_rows_is_kept(tmp_path):
+    """The sweep of another command in the same folder; one that adds rows replaces the table."""
+    misfits, path = pd.DataFrame({"misfit": [0.1, 0.2]}), tmp_path / "sweep.csv"
+    assert write_beside(path, misfits[:1]) == write_beside(path, misfits) == [path]
+    before, kept = path.read_text(), []
+    for peak in (1.0, 2.0):
+        kept += write_beside(path, pd.DataFrame({"peak": [peak]}))[1:]
+    assert [file.name for file in kept] == ["sweep-1.csv", "sweep-2.csv"]
+    assert kept[0].read_text() == before and set(tmp_path.iterdir()) == {path, *kept}
 
 
 def test_dataset_comes_back_as_it_was(pillar, tmp_path):

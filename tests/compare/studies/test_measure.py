@@ -110,13 +110,17 @@ def test_points_that_cannot_be_run_say_why(study, tmp_path):
 
 
 def test_timed_points_are_run_one_at_a_time_whatever_the_pool(study, tmp_path):
-    """A pool that cannot be made is not asked for; a second timed study waits for the first."""
+    """A pool that cannot be made is not asked for; a second timed study waits for the first,
+    and says so once."""
     timed = experiment(study(timed=True, repeats=2), tmp_path)
     rows = timed.rows(lambda work, points: 1 / 0)
     assert all(row["seconds"] > 0 and row["spread"] >= 0 for row in rows)
-    program = "from jointwave.compare.studies.store import alone\nwith alone(): print('in')"
+    program = "import logging; logging.basicConfig(level='INFO')\n"
+    program += "from jointwave.compare.studies.store import alone\nwith alone(): print('in')"
     with alone():
-        waiting = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE)
+        both = dict.fromkeys(("stdout", "stderr"), subprocess.PIPE)
+        waiting = subprocess.Popen([sys.executable, "-c", program], text=True, **both)
         with pytest.raises(subprocess.TimeoutExpired):
             waiting.communicate(timeout=3)
-    assert waiting.communicate(timeout=600)[0] == b"in\n"
+    said, told = waiting.communicate(timeout=600)
+    assert said == "in\n" and told.count("waiting for another process, which times runs") == 1
