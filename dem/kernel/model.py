@@ -113,28 +113,28 @@ class KernelFlags(NamedTuple):
 
     @property
     def buffer(self) -> Any:
-        """Rows of a chunk's buffer.
+        """Rows of a chunk's buffer; they are at the same places whatever the joint law.
 
-        law : parameters of the law, where joints differ. gathered : motion of the blocks, with
-        finite rotations the scalar parts of quaternions last. jump : relative motion at the step.
-        rate, now : its rates half a step before, and at the step. force : in the frame. spread :
-        first moments of the traction about the face's centre. drag : the dashpots' force and
-        moment. on_j, on_i : force on block j and moments on both blocks. spare : scratch for one
-        block. before : after the last row, velocities of the tile before the step. Points sum into
-        the rows from `force` up to `on_j`.
+        gathered : motion of the blocks, with finite rotations the scalar parts of quaternions last.
+        jump : relative motion at the step. rate, now : its rates half a step before, and at the
+        step. force : in the frame. spread : first moments of the traction about the face's centre.
+        on_j, on_i : force on block j and moments on both blocks. drag : the dashpots' force and
+        moment. law : parameters of the law, where joints differ. spare : scratch for one block.
+        before : after the last row, velocities of the tile before the step. Points sum into the
+        rows from `force` up to `on_j`, and from `drag` up to `law`.
         """
         m = self.motions
         found = rows(
-            law=len(Law._fields) * self.parts.varied,
             gathered=self.dim + 2 * self.rotations + 2 * self.finite,
             jump=m,
             rate=m,
             now=m,
             force=self.dim,
             spread=self.spread_rows,
-            drag=m * self.drags,
             on_j=self.freedoms,
             on_i=self.rotations,
+            drag=m,
+            law=len(Law._fields),
             spare=1,
         )
         found.before = found.size

@@ -6,6 +6,7 @@ from math import copysign
 from jointwave.dem.contacts.chunks import LANES as L
 from jointwave.dem.kernel.model import KernelFlags
 from jointwave.dem.kernel.rotation import angular_momentum, rate, three, turn_blocks
+from jointwave.dem.kernel.sharing import of_blocks, shared
 from jointwave.joints.formula import formula
 
 #: Rows of the tiles' table: their first chunk, block, held block, recorded block, watched contact.
@@ -18,6 +19,7 @@ AFTER = 8 * L + 8
 SUMMED = VISCOUS, FRICTION, BOUNDARY, WORK  # over steps; the others are states
 
 
+@shared(of_blocks)
 def motion_for(form: KernelFlags) -> Callable:
     """Return the kernel of a tile's motion; absent effects are not compiled."""
     dim, freedoms, has_ledger, held, gravity = (
@@ -26,8 +28,9 @@ def motion_for(form: KernelFlags) -> Callable:
     mass_damping, local_damping = form.mass_damping or form.relaxed, form.local_damping
     damped, finite, matched = form.mass_damping or local_damping, form.finite, form.matched
     balanced = has_ledger and (damped or finite)  # the ledger needs the forces after the motion
-    oblique, SPARE, BEFORE = form.oblique and not finite, form.buffer.spare, form.buffer.before
-    stages, composed, AT_ONCE = form.stages, form.stages > 1, L - L % freedoms
+    oblique, stages = form.oblique and not finite, form.stages
+    composed, AT_ONCE = stages > 1, L - L % freedoms
+    SPARE, BEFORE = form.buffer.spare, form.buffer.before
 
     @formula
     def spring_force(blocks, closure, r, a):
@@ -50,7 +53,7 @@ def motion_for(form: KernelFlags) -> Callable:
             closure[r, a] = spare[a]
 
     @formula
-    def add_forces(blocks, first, last, begin, u, v, force, before, drive, state, n):
+    def add_forces(blocks, first, last, begin, u, v, force, before, drive, closure, n):
         """Add weight and external forces; return the potential energy of the weight, J."""
         potential = 0.0
         if gravity:
@@ -67,7 +70,7 @@ def motion_for(form: KernelFlags) -> Callable:
                     before[i + a] = v[i + a]
                     force[i + a] += drive[n, r, a]
                     if matched:
-                        force[i + a] -= spring_force(blocks, state.closure, r, a)
+                        force[i + a] -= spring_force(blocks, closure, r, a)
         return potential
 
     @formula
@@ -175,7 +178,7 @@ def motion_for(form: KernelFlags) -> Callable:
             force[i] += spare[12 + a] / kick
 
     @formula
-    def account_held(blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger):
+    def account_held(blocks, first, last, begin, v, force, before, drive, closure, n, kick, ledger):
         """Add the work of external forces and dashpots to the ledger; with damping, subtract the
         dashpot forces from `force`."""
         for r in range(first, last):
@@ -186,7 +189,7 @@ def motion_for(form: KernelFlags) -> Callable:
                     drag += matrices[2, a, m] * (0.5 * (before[i + m] + v[i + m]))
                 taken, given = 0.5 * kick * drag, 0.5 * kick * drive[n, r, a]
                 if matched:
-                    taken += 0.5 * kick * spring_force(blocks, state.closure, r, a)
+                    taken += 0.5 * kick * spring_force(blocks, closure, r, a)
                 ledger[BOUNDARY] += taken * old
                 ledger[BOUNDARY + AFTER] += taken * new
                 ledger[WORK] += given * old
@@ -220,44 +223,42 @@ def motion_for(form: KernelFlags) -> Callable:
         """Move the blocks of tile t in step or stage n of `drive`, and set their forces to zero."""
         begin, end = freedoms * tiles[BLOCK, t], freedoms * tiles[BLOCK, t + 1]
         first, last, kick, drift = tiles[HELD, t], tiles[HELD, t + 1], blocks.dt, blocks.dt
+        block = tiles[BLOCK, t]
         if composed:
             kick, drift = blocks.stages[n % stages, 0], blocks.stages[n % stages, 1]
         # Slices begin at 0: else numba allows for negative indices and does not vectorise.
         u, v, force = state.u[begin:end], state.v[begin:end], all_forces[begin:end]
         inertia, inverse = blocks.inertia[begin:end], blocks.inverse[begin:end]
-        before, pushed, turn = q[BEFORE:], 0.5 * kick * (1.0 + blocks.keep), state.turn
+        pushed, turn, closure = 0.5 * kick * (1.0 + blocks.keep), state.turn, state.closure
+        before, spare = q[BEFORE:], q[SPARE:]
         if finite:
-            turn = turn[tiles[BLOCK, t] : tiles[BLOCK, t + 1]]
-        potential = add_forces(blocks, first, last, begin, u, v, force, before, drive, state, n)
+            turn = turn[block : tiles[BLOCK, t + 1]]
+        potential = add_forces(blocks, first, last, begin, u, v, force, before, drive, closure, n)
         if oblique:
-            advance_oblique(blocks, tiles[BLOCK, t], u, v, force, before, pushed, drift)
+            advance_oblique(blocks, block, u, v, force, before, pushed, drift)
         else:
             advance(
                 u, v, force, inverse, before, pushed, drift, blocks.keep, blocks.local,
                 balanced or sampled,
             )  # fmt: skip
         if held and finite:
-            block, spare = tiles[BLOCK, t], q[SPARE:]
             for r in range(first, last):
-                apply_dashpots_turned(
-                    blocks, block, r, turn, u, v, inertia, before, state.closure, spare
-                )
+                apply_dashpots_turned(blocks, block, r, turn, u, v, inertia, before, closure, spare)
                 if has_ledger:
                     account_turned(
                         blocks, block, r, turn, u, v, force, drive, n, kick, spare, ledger
                     )
         elif held:
-            apply_dashpots(blocks, first, last, begin, u, v, before, q[SPARE:])
+            apply_dashpots(blocks, first, last, begin, u, v, before, spare)
         if has_ledger:
             if held and not finite:
                 account_held(
-                    blocks, first, last, begin, v, force, before, drive, state, n, kick, ledger
+                    blocks, first, last, begin, v, force, before, drive, closure, n, kick, ledger
                 )
             if damped or sampled:
                 account_motion(
-                    blocks, tiles[BLOCK, t], turn, u, v, before, inertia, force, kick, sampled,
-                    ledger,
-                )  # fmt: skip
+                    blocks, block, turn, u, v, before, inertia, force, kick, sampled, ledger
+                )
             if sampled:
                 ledger[GRAVITY] += potential
         if balanced or oblique:
@@ -265,8 +266,8 @@ def motion_for(form: KernelFlags) -> Callable:
         if matched:
             for r in range(first, last):
                 i = freedoms * blocks.held[r] - begin
-                close_springs(blocks, tiles[BLOCK, t], turn, state.closure, r, u, v, i, q[SPARE:])
+                close_springs(blocks, block, turn, closure, r, u, v, i, spare)
         if finite:
-            turn_blocks(blocks, tiles[BLOCK, t], turn, u, v, drift)
+            turn_blocks(blocks, block, turn, u, v, drift)
 
     return move

@@ -23,6 +23,7 @@ from jointwave.dem.kernel.rotation import (
     times,
     turned,
 )
+from jointwave.dem.kernel.sharing import of_motion, shared
 from jointwave.joints.formula import formula
 
 
@@ -115,6 +116,7 @@ def finite_moments_for(form: KernelFlags) -> Callable:
     return finite_moments
 
 
+@shared(of_motion)
 def relative_for(form: KernelFlags) -> Callable:
     """Return the kernel of the relative motion of a chunk's contacts."""
     dim, turns, freedoms, rotations = form.dim, form.turns, form.freedoms, form.rotations
@@ -191,6 +193,7 @@ def relative_for(form: KernelFlags) -> Callable:
     return relative
 
 
+@shared(of_motion)
 def onto_blocks_for(form: KernelFlags) -> Callable:
     """Return the kernel that adds the forces of a chunk's contacts to their blocks."""
     dim, turns, freedoms, in_row = form.dim, form.turns, form.freedoms, form.in_row

@@ -7,6 +7,7 @@ from jointwave.dem.contacts.chunks import LANES as L
 from jointwave.dem.kernel.model import KernelFlags
 from jointwave.dem.kernel.motion import ELASTIC, FRACTURE, FRICTION
 from jointwave.dem.kernel.rotation import three
+from jointwave.dem.kernel.sharing import of_contacts, shared
 from jointwave.joints.formula import formula
 from jointwave.joints.law import History, law_at, law_of, traction_for
 
@@ -17,6 +18,7 @@ def add(q, row, value):
     q[row] = q[row] + value
 
 
+@shared(of_contacts)
 def point_forces_for(form: KernelFlags) -> Callable:
     """Return the kernel of forces at contact points by the full joint law."""
     parts, dim, turns, stressed = form.parts, form.dim, form.turns, form.stressed
@@ -124,6 +126,9 @@ def point_forces_for(form: KernelFlags) -> Callable:
         common = law_of(laws, 0)
         for c in range(FORCE, END):
             q[c] = 0.0
+        if drags:
+            for c in range(DRAG, LAW):
+                q[c] = 0.0
         for p in range((k.size - POINT) // (dim * L)):
             own, before = POINT + p * dim * L, PAST + p * past_rows
             for c in range(L):
@@ -166,6 +171,7 @@ def point_forces_for(form: KernelFlags) -> Callable:
     return point_forces
 
 
+@shared(of_contacts)
 def face_forces_for(form: KernelFlags) -> Callable:
     """Return the kernel of joints that always hold: springs and dashpots spread over the face."""
     dim, turns, stressed, varied = form.dim, form.turns, form.stressed, form.parts.varied

@@ -1,9 +1,14 @@
 """Blocks pay only for what their scene calls for, proved on what is compiled, without a clock."""
 
+from inspect import getclosurevars, isfunction
+from itertools import product
+
 import pytest
 
 from jointwave.dem import simulate
-from jointwave.dem.kernel import leapfrog
+from jointwave.dem.kernel import leapfrog, motion, relative, tractions
+from jointwave.dem.kernel.model import KernelFlags
+from jointwave.joints.law import LawFlags
 from tests.rocks import rock
 
 SEVERAL = r" <\d+ x double>"  # of several contacts at once
@@ -83,3 +88,30 @@ def test_absent_effects_leave_no_array(kernel):
     _, blocks, state, samples, drive, walls, *_ = kernel(lattice())[2]
     absent = blocks.held, blocks.tensor, state.history, samples.energy, drive, walls
     assert absent == (None,) * 6
+
+
+def constants(formula):
+    """Return the variables of a formula's closure, and of those that it calls."""
+    own = getclosurevars(formula).nonlocals.items()
+    return {name: constants(one) if isfunction(one) else one for name, one in own}
+
+
+@pytest.mark.parametrize(
+    "factory",
+    [
+        motion.motion_for, relative.relative_for, relative.onto_blocks_for,
+        tractions.point_forces_for, tractions.face_forces_for,
+    ],
+)  # fmt: skip
+def test_shared_formulas_are_those_of_each_kernel(factory):
+    """None depends on a flag that it is not given, and kernels of other laws share the motion."""
+    bare = LawFlags(*[False] * 13)
+    laws = [bare._replace(**{name: True}) for name in bare._fields]
+    forms = [
+        KernelFlags(dim, turns, law, *others, dim == 3 and turns and others[0])
+        for dim, turns, law in product((2, 3), (False, True), laws)
+        for others in ((*[k] * 12, 1 + k) for k in (False, True))
+    ]
+    for form in forms:
+        assert constants(factory(form)) == constants(factory.__wrapped__(form))
+    assert len(set(map(motion.motion_for, forms))) == 8
