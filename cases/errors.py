@@ -104,6 +104,15 @@ class _ShortRepr(reprlib.Repr):
 
     repr_date = repr_time = repr_datetime
 
+    def repr_instance(self, x: Any, level: int) -> str:
+        """Return an inline table of the keys that were given, or a number of numpy."""
+        if hasattr(x, "item"):
+            return self.repr1(x.item(), level)
+        if (given := getattr(x, "model_fields_set", None)) is None:
+            return super().repr_instance(x, level)
+        keys = [f"{k} = {self.repr1(v, level - 1)}" for k, v in x if k in given]
+        return f"{{{', '.join(keys)}}}"
+
 
 _short = _ShortRepr().repr
 

@@ -143,7 +143,7 @@ def _of_sets(scene: RockMass) -> Iterator[Wrong]:
     """Yield contradictions of the joint sets."""
     sets, file = scene.joint_sets, scene.domain.file_key
     for i, one in enumerate(sets):
-        names = _of_names(one, [other.name for other in sets], i)
+        names = _of_names(one, sets, i)
         for rule in (names, _of_places(one, file), _of_law(one, scene)):
             yield from within(f"joint_sets[{i}]", rule)
     try:
@@ -152,7 +152,8 @@ def _of_sets(scene: RockMass) -> Iterator[Wrong]:
         yield "joint_sets", None, str(error)
 
 
-def _of_names(one: JointSet, names: list[str], index: int) -> Iterator[Wrong]:
+def _of_names(one: JointSet, sets: list[JointSet], index: int) -> Iterator[Wrong]:
+    names = [other.name for other in sets]
     if one.name in names[:index]:
         yield "name", one.name, "must be unique"
     for name in one.ends_at:
@@ -161,6 +162,10 @@ def _of_names(one: JointSet, names: list[str], index: int) -> Iterator[Wrong]:
             yield "ends_at", name, f"must name other sets: {known or 'none'}"
     if len(set(one.ends_at)) < len(one.ends_at):
         yield "ends_at", one.ends_at, "must not repeat a set"
+    for other in (other for other in sets if other.name in one.ends_at):
+        across = one.normal - (one.normal @ other.normal) * other.normal
+        if np.linalg.norm(across) < PARALLEL:
+            yield "ends_at", other.name, "cannot end there: the two sets are parallel"
 
 
 def _of_places(one: JointSet, file: str | None) -> Iterator[Wrong]:
@@ -230,11 +235,11 @@ def _of_outlines(scene: RockMass, outline: Shape) -> Iterator[Wrong]:
         key, corners = f"regions[{i}].outline", len(one.outline)
         shape = shapely.Polygon(one.outline if corners > 2 else ())
         if not (shape.is_valid and shape.area > 0):
-            yield key, corners, "must be a polygon that does not cross itself"
+            yield key, one.outline, "must be a polygon that does not cross itself"
         within = shapely.Polygon(scene.domain.corners).exterior.distance(shape)
         if within <= outline.tolerance and (scene.waves or scene.boundaries.sides("periodic")):
             allowed = "must lie inside the domain, not on its sides, with waves or periodic sides"
-            yield key, corners, allowed
+            yield key, one.outline, allowed
 
 
 def _of_periodic_sides(scene: RockMass) -> Iterator[Wrong]:

@@ -11,10 +11,10 @@ from jointwave.cases.geometry.measure import cell_moments, facet_moments, least_
 from jointwave.cases.geometry.relations import groups
 
 LAYER = 5.0  # largest thickness of a layer over volume per surface: 2 if thin, 4 for a square
-PARALLEL_FACES = 1 - 1e-9  # cosine of the angle within which faces are parallel
+ALONG = 0.9998  # cosine of the angle, 1.1 degrees, within which faces are almost parallel
 BESIDE = (
-    "a parallel joint or boundary of a region, less than domain.least_width: put both in one "
-    "plane, or set it below that"
+    "a parallel joint or boundary of a region, less than domain.least_width, or at an angle below "
+    "domain.least_angle: put both in one plane, or set these below that"
 )
 
 
@@ -72,10 +72,11 @@ class Pieces:
         across = self.half.across[own]
         between = own[self._jointed[own] & (self.root[across] == other)]
         facing = own[(across >= 0) & (self._jointed[own] | ~self._open[own])]
-        apart = np.add.outer(self._place[facing], self._place[between])
-        opposed = self.half.outward[facing] @ self.half.outward[between].T < -PARALLEL_FACES
+        place = self.body.vertices[self._vertices[piece]].mean(axis=0)
+        away = self._place - self.half.outward @ place
+        apart = np.add.outer(away[facing], away[between])
+        opposed = self.half.outward[facing] @ self.half.outward[between].T < -ALONG
         if (opposed & (apart < LAYER * self.thickness[piece])).any():
-            place = self.body.vertices[self._vertices[piece]].mean(axis=0)
             raise Sliver(place, f"a joint is {apart[opposed].min():.3g} m from {BESIDE}")
 
     def joined(self, order: Iterable[int], tolerance: float) -> tuple[Complex | None, list[int]]:

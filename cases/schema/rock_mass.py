@@ -164,7 +164,8 @@ class Region(Inclined):
     #: where it points
     dip_direction: DipDirection | None = None
     through: Point | None = None  #: m, a point of the line or plane
-    outline: list[Point] | None = None  #: m, in the plane corners of a polygon instead of a line
+    #: m, in the plane corners of a polygon instead of a line
+    outline: list[list[Number]] | None = None
     density: Positive | None = None  #: kg/m3
     intact_modulus: Positive | None = None  #: Pa, Young's modulus
     intact_poisson: Poisson | None = None  #: of the rock between the joints
@@ -176,6 +177,8 @@ class Region(Inclined):
             raise contradiction(".through", self.through, "give through or outline, not both")
         if self.outline is not None and self.dip:
             raise contradiction(".dip", self.dip, "has no meaning with an outline")
+        if any(len(corner) != 2 for corner in self.outline or ()):
+            raise contradiction(".outline", self.outline, "must have 2 numbers a corner")
         return self
 
     def rock(self, rest: IntactRock) -> IntactRock:

@@ -17,6 +17,7 @@ ROWS = {"dip": 0.0, "spacing": 1.0}
 SCATTERED = {"scatter": 0.01, "seed": 1}
 NEAR = {"dip": 0.0, "through": [0.0, 2.005]}
 TWO = [NEAR, {"dip": 0.0, "through": [0.0, 2.05]}]
+FLAT = {"dip": 0.05, "spacing": 2.5, "through": [0.0, 2.003]}
 BASE = {"dip": 0.0, "through": [0.0, 0.05]}
 AWAY = {"dip": 45.0, "through": [20.0, 3.0]}
 TUNNEL = SIZE | {"openings": [[[4.0, 1.0], [6.0, 1.0], [6.0, 2.5], [4.0, 2.5]]]}
@@ -42,6 +43,8 @@ REFUSED = {
     "an outline that is not convex": ([ROWS], DENT, "corner of the outline ... near [4, 3.5]"),
     "a row that is too thin": ([ROWS, NEAR], SIZE | {"slivers": "refuse"}, THIN),
     "a joint lost with a row": ([ROWS, NEAR], SIZE, LOST),
+    "a joint lost with a wedge": ([ROWS, NEAR | {"dip": 0.02}], SIZE, "a joint is 0.00"),
+    "joints of a set lost with wedges": ([wide(2.0), FLAT], SIZE, "m from a parallel joint or"),
     "a joint beside another": (TWO, SIZE, "a joint is 0.045 m from a parallel joint"),
     "a joint beside a side": ([BASE], SIZE, "joint_sets[0]: is lost ... least_width = 0.06 m"),
     "more than the memory": ([wide(1e-5)], SIZE, f"joint_sets[0].spacing = 1e-05: {MANY}"),

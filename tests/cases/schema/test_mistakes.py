@@ -62,9 +62,10 @@ IN_PLANE = {
     "regions = [{ name = 'upper' }] -> regions[0].through": "give through or outline",
     f"{UPPER}; regions[0].outline = [[4, 1], [5, 1]] -> regions[0].through": "through or outline",
     "regions = [{ name = 'a', outline = [[40, 1], [50, 1]] }] -> regions[0].outline": "a polygon",
-    "regions = [{ name = 'a', outline = [[40, 1], [50, 1], [50, 0]] }] -> regions[0].outline = 3": (
+    "regions = [{ name = 'a', outline = [[40, 1], [50, 1], [50, 0]] }] -> regions[0].outline = [": (
         "inside the domain"
     ),
+    "regions = [{ name = 'a', outline = [[1, 1, 1]] }] -> regions[0].outline": "2 numbers a corner",
     f"{UPPER}; regions[0].densty = 2300.0": "unknown key",
     "regions = [{ name = 'rock', through = [0, 25] }] -> regions[0].name = 'rock'": "not 'rock'",
     f"{UPPER}; regions[1] = {{ name = 'upper', through = [0, 30] }} -> regions[1].name": "unique",
@@ -93,7 +94,9 @@ IN_PLANE = {
         "must not overlap openings[0]"
     ),
     "domain.openings = [[[0, 0], [60, 0], [60, 40], [0, 40]]] -> domain.openings[0]": "leave rock",
-    f"{PRISM} = [[1, 1], [2, 1], [2, 2]] }}] -> domain.prisms": "no meaning in the plane",
+    f"{PRISM} = [[1, 1], [2, 1], [2, 2]] }}] -> domain.prisms = [{{polygon = [[1.0": (
+        "2.0]], axis = 'x'}]: has no meaning in the plane"
+    ),
     "rock.p_speed = 2000.0": "unknown key",
     "no prestress.yy": "is required",
     "prestress.zz = 1000000.0": "no meaning in the plane",
@@ -104,6 +107,7 @@ IN_PLANE = {
     "joint_sets[1].ends_at = ['fault'] -> joint_sets[1].ends_at = 'fault'": "bedding",
     "joint_sets[1].ends_at = ['cross'] -> joint_sets[1].ends_at = 'cross'": "bedding",
     "joint_sets[1].ends_at = ['bedding', 'bedding']": "not repeat a set",
+    "joint_sets[1].dip = -145.0 -> joint_sets[1].ends_at = 'bedding'": "the two sets are parallel",
     "joint_sets[0].ends_at = ['cross'] -> joint_sets": "sets end at each other: bedding, cross",
     "no joint_sets[1].ends_at -> joint_sets[1].offset = 0.5": "without joint_sets[1].ends_at",
     "no joint_sets[1].spacing": "or through",
@@ -166,6 +170,7 @@ IN_SPACE = {
     "waves[0].polarisation = [1.0, 0.0, 0.0]": "is of S waves",
     "prestress.xx = 1e6; prestress.yy = 1e6 -> prestress.zz": "is required in space",
     "regions = [{ name = 'a', outline = [[1, 1, 1]] }] -> regions[0].outline = [[1.0": "no meaning",
+    "regions = [{ name = 'a', outline = [[1, 1], [2, 1]] }] -> regions[0].outline": "no meaning in",
     "domain.openings = [[[1, 1, 1], [2, 1, 1], [2, 2, 1]]] -> domain.openings[0]": (
         "must be two opposite corners of a box"
     ),
