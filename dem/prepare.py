@@ -83,7 +83,8 @@ def loads_of(
     blocks: RigidBlocks, time: Clock, moving: Shaking | None, incident: "IncidentField | None"
 ) -> tuple[Loads, np.ndarray, np.ndarray]:
     """Return the external forces on blocks, and the resistance [h, d + d^2, d + d^2] of their
-    dashpots and of unit dashpots where quiet sides bear the weight (`boundaries.dashpots`)."""
+    dashpots, and the stiffness of the springs by which quiet sides bear the weight
+    (`boundaries.dashpots`)."""
     around, rows = blocks.around, blocks.around.rows
     row = np.searchsorted(rows, around.points.block)
     resistance, bearing = (
@@ -102,7 +103,7 @@ def loads_of(
 def held(blocks: RigidBlocks, loads: Loads, resistance: np.ndarray, dt: float, keep: float) -> Held:
     """Return the held blocks for steps of dt, s; keep : as in `model.held_by`."""
     dashpot, springs = loads.onto @ resistance @ loads.onto.T, None
-    if blocks.around.springs:
+    if blocks.around.springs or blocks.around.borne.any():
         springs = np.zeros((len(dashpot), 3, *dashpot.shape[1:]))
         for one in blocks.around.springs:
             springs[np.searchsorted(loads.rows, one.block)] = one.at(dt)

@@ -22,8 +22,7 @@ from jointwave.cases.material.closure import stresses
 from jointwave.dem.blocks.rigid import constants
 from jointwave.dem.contacts.chunks import LANES, Chunks
 from jointwave.dem.contacts.faces import Contacts
-from jointwave.dem.contacts.law import Columns
-from jointwave.dem.contacts.stability import critical_time_step, squared_frequencies
+from jointwave.dem.contacts.stability import squared_frequencies
 from jointwave.dem.kernel.leapfrog import make_stepper
 from jointwave.dem.kernel.model import Model, State, held_by, samples_for, state_at_rest
 from jointwave.dem.sides.loads import Loads
@@ -43,7 +42,6 @@ STAGES = 40  # stages of releasing the walls of openings where joints may slip o
 STICKING_RATIO = 1e-4  # out-of-balance ratio with sticking joints, before they may slip and open
 RESIDUAL = 1e-4  # default residual force, over the force of loads and waves on a block
 LEAST = 1e-12  # smallest default of the out-of-balance ratio
-NO_RESISTANCE = 1e-9  # of the largest resistance: smaller ones count as none
 CHUNKS_A_STAGE = 0.3  # chunks of ten steps after each stage, over the root of the number of blocks
 
 
@@ -109,32 +107,20 @@ def unstressed(model: Model) -> Chunks:
     return model.chunks._replace(table=table)
 
 
-def unresisted(resistance: np.ndarray, masses: np.ndarray) -> np.ndarray:
-    """Return matrices [h, F, F] that project block velocities onto those without resistance.
-
-    resistance : force and moment per velocity [h, F, F], of any magnitude. masses : [h, F, F].
-    """
-    root = np.linalg.cholesky(masses)
-    back = np.linalg.inv(root)
-    size, axes = np.linalg.eigh(back @ resistance @ back.swapaxes(1, 2))
-    axes *= (size <= NO_RESISTANCE * size.max(initial=0.0))[:, None, :]
-    return back.swapaxes(1, 2) @ axes @ axes.swapaxes(1, 2) @ root.swapaxes(1, 2)
-
-
-def mass_factors(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
-    """Return factors of the mass matrices [N, 1, 1] that give all blocks the same critical step.
+def mass_factors(contacts: Contacts, squared: np.ndarray) -> np.ndarray:
+    """Return factors of the mass matrices [N] that give all blocks the same critical step.
 
     Groups of blocks without a wall keep their masses: they come to rest about their centre of mass.
+
+    squared : of `stability.squared_frequencies` [N], 1/s2.
     """
-    found, count, (i, j) = np.ones(len(masses)), len(masses), contacts.blocks.T
+    found, count, (i, j) = np.ones(len(squared)), len(squared), contacts.blocks.T
     inner = j < count
     graph = coo_array((np.ones(inner.sum()), (i[inner], j[inner])), shape=(count, count))
     group = connected_components(graph, directed=False)[1]
     held = np.isin(group, group[i[~inner]])
-    if held.any():
-        squared = squared_frequencies(contacts, columns, masses)
-        np.divide(squared, squared.max(), out=found, where=held & (squared > 0.0))
-    return found[:, None, None]
+    np.divide(squared, squared.max(), out=found, where=held & (squared > 0.0))
+    return found
 
 
 class BlockRelaxation:
@@ -142,8 +128,8 @@ class BlockRelaxation:
 
     Masses are scaled so that all blocks of a group with a wall have the same critical step
     (Underwood): a static state depends on weight and stiffness only. All dashpots and local damping
-    are zero, and friction does not depend on rate. Quiet sides that bear the weight are fixed in
-    the directions in which they bear it. The kernel is that of the motion, which saves compiling a
+    are zero, and friction does not depend on rate. Quiet sides bear the weight by the springs of
+    half a block of rock before a wall. The kernel is that of the motion, which saves compiling a
     second one, except for composed steps.
 
     sticks : apply the weight alone, with joints that cannot open, slip or break.
@@ -153,33 +139,35 @@ class BlockRelaxation:
         blocks, model, loads = system.blocks, system.model, system.loads
         self.scene = blocks.scene
         columns = blocks.columns._replace(viscosity=None)
-        masses = blocks.masses * mass_factors(blocks.contacts, columns, blocks.masses)
-        dt = STEP_FRACTION * critical_time_step(blocks.contacts, columns, masses, 0.0)
+        # Resultants of the springs of quiet sides that bear the weight, per block displacement.
+        self.bearing, onto, rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
+        springs = np.zeros_like(blocks.masses)
+        springs[rows] = weighed * (onto @ self.bearing)
+        squared = squared_frequencies(blocks.contacts, columns, blocks.masses, springs)
+        factors = mass_factors(blocks.contacts, squared)
+        masses = blocks.masses * factors[:, None, None]
+        dt = 2 * STEP_FRACTION / sqrt((squared / factors).max())
         own = constants(blocks, dt, masses)._replace(local=0.0, mass=blocks.inertia[:, 0])
         laws = model.laws.copy()
         if not weighed:
             own = own._replace(gravity=np.zeros_like(own.gravity))
         laws[IN_MOTION] = 0.0
-        rows, self.steady, self.walls, self.alpha = loads.rows, loads.steady, None, 0.0
+        self.rows, self.steady, self.walls, self.alpha = rows, loads.steady, None, 0.0
         stress = blocks.prestress
         if sticks:
             laws, self.steady, stress = sticking(laws), np.zeros_like(self.steady), None
             model = model._replace(chunks=unstressed(model))
         if stress is not None and (walls := blocks.around.opened) and model.form.points:
             rows = np.union1d(rows, walls.block)
-            self.walls = Loads(rows, [walls], [], system.time, loads.onto).steady
+            self.walls = Loads(rows, [walls], [], system.time, onto).steady
             self.steady = np.zeros_like(self.walls)
             self.steady[np.searchsorted(rows, loads.rows)] = loads.steady
-        # Resultants of unit dashpots on quiet sides that bear the weight, per block velocity.
-        self.bearing, self.onto, self.rows = system.bearing @ loads.onto.T, loads.onto, loads.rows
-        nothing = np.zeros((len(rows), *masses.shape[1:]))
-        held = held_by(nothing, rows, masses, dt) if model.form.held else None
-        if held is not None and model.form.matched:
-            held = held._replace(springs=np.zeros_like(model.held.springs))
-        if weighed and held is not None:
-            resistance = nothing.copy()
-            resistance[np.searchsorted(rows, loads.rows)] = self.onto @ self.bearing
-            held.matrices[:, 1] = unresisted(resistance, masses[rows])
+        held = None
+        if model.form.held:
+            still, own_springs = np.broadcast_to(np.eye(len(onto)), springs[rows].shape), None
+            if model.form.matched:
+                own_springs = np.stack([still, dt * still, springs[rows]], axis=1)
+            held = held_by(0 * still, rows, masses, dt, springs=own_springs)
         form = model.form._replace(stages=1)
         self.model = model._replace(form=form, blocks=own, laws=laws, held=held)
         self.state, self.samples = state_at_rest(self.model), samples_for(self.model, 0)
@@ -234,13 +222,15 @@ class BlockRelaxation:
         rest = self.relax(STICKING_RATIO)
         self.model.laws[:] = own
         at = self.state if rest.ratio <= STICKING_RATIO else before
-        fill(self.state, before._replace(u=at.u, turn=at.turn))
+        fill(self.state, before._replace(u=at.u, turn=at.turn, closure=at.closure))
         return rest.steps
 
     def place(self, moved: np.ndarray, tolerance: float) -> None:
         """Start from this displacement of the blocks [N, F] if it is a static state."""
         before = copied(self.state)
         self.state.u[: self.count] = moved
+        if self.state.closure is not None:
+            self.state.closure[:] = moved[self.model.held.block]
         force = np.abs(self.unbalanced())
         if not force.max() <= tolerance * self.scale:
             fill(self.state, before)
@@ -336,16 +326,9 @@ class BlockRelaxation:
         return gain.ravel() / self.model.blocks.dt
 
     def borne(self) -> np.ndarray:
-        """Return the resultants [h, d + d^2] of the forces by which quiet sides bear the weight,
-        from tractions that vary linearly along each block's sides."""
-        moves = self.model.held.matrices[:, 1]
-        held = moves.copy()
-        moves[:] = np.eye(moves.shape[1])
-        missing = -self.unbalanced().reshape(self.count, -1)[self.rows]
-        moves[:] = held
-        own = self.onto @ self.bearing
-        stretched = np.linalg.pinv(own, rcond=1e-9, hermitian=True) @ missing[:, :, None]
-        return (self.bearing @ stretched)[:, :, 0]
+        """Return the resultants [h, d + d^2] of the forces by which quiet sides bear the weight."""
+        closure = self.state.closure[np.isin(self.model.held.block, self.rows)]
+        return -(self.bearing @ closure[:, :, None])[:, :, 0]
 
     def fastest(self, change: np.ndarray) -> str:
         """Name the block that moves farthest."""

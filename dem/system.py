@@ -16,8 +16,9 @@ class BlockSystem(NamedTuple):
     """Blocks ready to run.
 
     loads : forces on held blocks. resistance : of the dashpots on sides and ends
-    [h, d + d^2, d + d^2], see `boundaries.dashpots`. bearing : the same for unit dashpots where
-    sides bear the weight. shaking : motion of walls; None where none moves. threads : their number.
+    [h, d + d^2, d + d^2], see `boundaries.dashpots`. bearing : the same for the springs by which
+    sides bear the weight until it is at rest. shaking : motion of walls; None where none moves.
+    threads : their number.
     """
 
     blocks: Any

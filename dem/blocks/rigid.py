@@ -162,7 +162,7 @@ def form_of(blocks: RigidBlocks) -> KernelFlags:
         relaxed=weighed or blocks.prestress is not None,
         in_row=blocks.in_row,
         oblique=coupled(blocks.masses),
-        matched=bool(around.springs),
+        matched=bool(around.springs) or bool(around.borne.any()),
         finite=blocks.finite,
     )
 

@@ -11,7 +11,6 @@ from jointwave.cases.geometry.blocks import Blocks as Cut
 from jointwave.cases.geometry.cell_complex import NO_SET, GeometryError
 from jointwave.cases.material.contact_points import CUT
 from jointwave.cases.material.rigid_blocks import RigidJoints, rigid_joints, welds
-from jointwave.cases.material.rock import wave_moduli
 from jointwave.cases.material.rock_mass import set_time_constants
 from jointwave.cases.partition.joints import ROCK, rocks_of
 from jointwave.cases.partition.lattice import further_sets
@@ -25,7 +24,7 @@ from jointwave.dem.contacts.law import Columns, Rule, columns_of
 from jointwave.dem.readings.receivers import receivers_of
 from jointwave.dem.readings.snapshots import Bodies, triangles
 from jointwave.dem.readings.waveforms import PointsAndJoints
-from jointwave.dem.sides.domain import surroundings_of
+from jointwave.dem.sides.domain import half_blocks, surroundings_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,10 +136,9 @@ def _without_set(
     inner = welds(scene, cut, further, pairs[cuts], centre[cuts], normal[cuts], shift)
     block, wall = pairs[held].T
     reach = (contacts.arm[held, 0] * normal[held]).sum(axis=1)
-    moduli = np.array([wave_moduli(one) for one in rocks_of(scene)])
     kinds = [getattr(scene.boundaries, one) for one in contacts.walls]
     sticks = np.array([one == "fixed" for one in kinds], dtype=float)[wall - cut.count]
-    k_n, k_s = moduli[cut.body.region[block]].T / reach
+    k_n, k_s = half_blocks(scene, cut.body.region[block], reach).T
     return np.append(inner, [k_n, k_s * sticks], axis=1)
 
 

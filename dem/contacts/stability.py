@@ -16,6 +16,7 @@ damping alpha makes forces that reverse a velocity 1 + alpha times as large.
 """
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky_banded
@@ -71,9 +72,15 @@ def critical_time_step(
     return critical_step(largest, columns.viscosity is not None)
 
 
-def squared_frequencies(contacts: Contacts, columns: Columns, masses: np.ndarray) -> np.ndarray:
-    """Return each block's bound on the square of the largest angular frequency [N], 1/s2."""
-    return _highest(_stiffness(contacts, columns, columns.stiffest, masses)[0], masses)
+def squared_frequencies(
+    contacts: Contacts, columns: Columns, masses: np.ndarray, held: Any = 0.0
+) -> np.ndarray:
+    """Return each block's bound on the square of the largest angular frequency [N], 1/s2.
+
+    held : stiffness of springs between each block and the ground [N, F, F].
+    """
+    own = _stiffness(contacts, columns, columns.stiffest, masses)[0]
+    return _highest(own + held, masses)
 
 
 def _highest(matrices: np.ndarray, masses: np.ndarray) -> np.ndarray:

@@ -8,11 +8,13 @@ from scipy.sparse import csr_array
 
 from jointwave.cases import incident
 from jointwave.cases.geometry.blocks import Blocks
-from jointwave.cases.geometry.measure import Outlines
+from jointwave.cases.geometry.measure import Outlines, along_and_across
 from jointwave.cases.histories import LoadHistory, Step
 from jointwave.cases.loads import step_means, velocity_of
 from jointwave.cases.material.quiet_sides import base_traction, borne, impedances
+from jointwave.cases.material.rock import wave_moduli
 from jointwave.cases.material.rock_mass import refuse_beyond_strength
+from jointwave.cases.partition.joints import rocks_of
 from jointwave.cases.partition.shape import covered
 from jointwave.cases.sampling import Clock
 from jointwave.cases.schema.pulse import PlaneLoad, shortest_period
@@ -41,6 +43,8 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
     refuse_beyond_strength(scene)
     quiet = points_on(cut, facets_on(cut, sides, scene.boundaries.sides("quiet")))
     impedance = impedances(scene, quiet.normal, quiet.place, cut.body.region[quiet.block])
+    reach = (quiet.arm * quiet.normal).sum(axis=1)
+    springs = half_blocks(scene, cut.body.region[quiet.block], reach)
     patterns = [load_pattern(scene, cut, sides, one) for one in scene.pushes]
     opened = None
     if scene.prestress is not None:
@@ -60,12 +64,19 @@ def surroundings_of(scene: RockMass, cut: Blocks, sides: tuple[str, ...]) -> Sur
     return Surroundings(
         points=quiet,
         impedance=impedance,
-        borne=borne(scene, quiet.normal),
+        borne=borne(scene, quiet.normal) @ along_and_across(quiet.normal, springs),
         patterns=patterns,
         bases=[Base(one.side or "", one, np.array(one.direction)) for one in scene.bases],
         opened=opened,
         waves=waves if scene.waves and len(quiet.block) else None,
     )
+
+
+def half_blocks(scene: RockMass, region: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Return normal and shear stiffness [n, 2], Pa/m, of the rock of regions [n] between blocks'
+    centroids and sides at distances `reach` [n], m."""
+    moduli = np.array([wave_moduli(one) for one in rocks_of(scene)])
+    return moduli[region] / reach[:, None]
 
 
 def load_pattern(

@@ -39,6 +39,7 @@ def surroundings_of(
     points = points_on(cut, facets_on(cut, SIDES, SIDES[:2]), share=share)
     end = (points.normal[:, dim // 2] > 0).astype(int)
     impedance = np.array([_dashpots(*one) for one in zip(kinds, rocks, strict=True)])
+    walls = np.array([(one.wall_stiffness, one.wall_shear_stiffness) for one in rocks])
     patterns = [] if shaken else [_push(scene, cut)]
     if stress is not None:
         bear = facets_on(cut, SIDES, scene.ends.sides("free", "quiet", "matched"))
@@ -47,7 +48,7 @@ def surroundings_of(
     return Surroundings(
         points=points,
         impedance=along_and_across(points.normal, impedance[end]),
-        borne=np.array(scene.bears, dtype=float)[end, None, None] * np.eye(dim),
+        borne=along_and_across(points.normal, (walls * np.transpose([scene.bears]))[end]),
         patterns=patterns,
         bases=[Base("start", scene.load, direction)] * shaken,
         springs=tuple(

@@ -45,10 +45,11 @@ class Surroundings(NamedTuple):
     """Forces, dashpots and moving bases on the boundary of blocks.
 
     points : of dashpots, those at a moving base included. impedance : at the points [m, d, d],
-    Pa s/m. borne : directions in which the points bear the weight [m, d, d], of 1 or 0. patterns :
-    forces. bases : moving walls. springs : between blocks and dashpots. opened : forces of the
-    walls of openings before excavation; None without. waves : function of (field, held blocks,
-    clock) that returns the forces of incident waves; None without waves.
+    Pa s/m. borne : stiffness of the points while the weight comes to rest [m, d, d], Pa/m, 0 where
+    they do not bear it. patterns : forces. bases : moving walls. springs : between blocks and
+    dashpots. opened : forces of the walls of openings before excavation; None without. waves :
+    function of (field, held blocks, clock) that returns the forces of incident waves; None without
+    waves.
     """
 
     points: BoundaryPoints

@@ -118,6 +118,36 @@ def test_matched_end_bears_a_row_across_its_axis(solver, static, plain):
     assert static == (np.abs(leaning.velocity.values).max() < 1e-9)
 
 
+OBLIQUE = [SETS[0] | {"name": str(dip), "dip": dip, "spacing": 2.1} for dip in (38.0, -55.0)]
+AS_WALLS = {
+    "cantilever": (
+        PILLAR | {"gravity": {"direction": [0.6, 0.8, 0.0], "acceleration": 0.5}},
+        {"ends.end": "quiet"},
+        {"ends.end": "fixed"},
+    ),
+    "rock": (
+        ROCK | {"joint_sets": OBLIQUE, "domain": {"size": [9.0, 8.0]}}
+        | {"record": {"points": [[4.5, 0.3], [0.3, 4.0]], "joints": [[4.5, 0.1], [3.7, 0.2]]}},
+        {},
+        {"boundaries": {"bottom": "fixed", "left": "roller", "right": "roller"}},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", AS_WALLS)
+def test_quiet_sides_bear_the_weight_of_blocks_as_walls_do(case):
+    """Below the rock as fixed sides, beside it as rollers: half a block of rock lies before both.
+    So joints between two blocks on a quiet side carry the weight, too."""
+    scene, absorbing, walls = AS_WALLS[case]
+    changes = quiet(scene) | {"time.duration": 0.01, "numerics.dem.static_tolerance": 1e-9}
+    one, other = (run(scene, "dem", **changes, **own) for own in (absorbing, walls))
+    for name in ("stress", "traction") if "loads" in scene else ("displacement", "rotation"):
+        scale = float(abs(other[name]).max())
+        np.testing.assert_allclose(one[name], other[name], rtol=0, atol=1e-5 * scale)
+    if "loads" in scene:
+        assert (one.traction.sel(joint_axis="n") > 0.1 * RHO * G * 8.0).all()
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_wave_enters_whole_through_a_base_whose_joints_the_weight_has_closed(engine):
     """K d_m is a twentieth of the stress of the weight, at which joints are (1 + 20.8)^2 times as
