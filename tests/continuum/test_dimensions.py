@@ -108,7 +108,10 @@ def test_homogenised_rock_moves_alike_in_all_dimensions(moved):
 SLIDING = {"friction_angle": 30.0, "cohesion": 1e4, "damping_ratio": 0.02}
 
 
-@pytest.mark.parametrize(("dim", "way"), [(2, [0.6, 0.8, 0.0]), (3, [0.48, 0.8, 0.36])])
+@pytest.mark.parametrize(
+    ("dim", "way"),
+    [pytest.param(2, [0.6, 0.8, 0.0], marks=pytest.mark.slow), (3, [0.48, 0.8, 0.36])],
+)
 def test_plane_sections_that_slide_move_as_the_bar_across(dim, way, moved):
     """Sections that move as one, motion.rotation = "none", are the bar with E along and G across,
     at any Poisson's ratio. Joints slide and open by the same law."""

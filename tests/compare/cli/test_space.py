@@ -96,19 +96,8 @@ def test_rigid_blocks_run_the_wall(jointwave):
         assert friction[-1] > friction[0] and energy_residual(found) < 1e-3
 
 
-def test_rigid_blocks_run_the_cavern(jointwave):
-    """From the state after excavation, and by the wave in the medium of three joint sets: of half
-    its amplitude over the impedance below, where it has not met the cavern. Waves whose field is
-    not known are refused."""
+def test_waves_in_space_whose_field_is_not_known_are_refused(jointwave):
     run = ("run", "rock-mass/cavern", "--engine", "dem", "--out", "out")
-    jointwave(*run)
-    with xr.open_dataset("out/dem.nc") as found:
-        assert found.attrs["blocks"] > 400 and found.attrs["static_out_of_balance"] < 1e-8
-        below = found.velocity.sel(point=0)
-        speed = abs(below.sel(axis="z")).max().item()
-        assert 1e6 / (2650 * 6000) < speed < 2e6 / (2650 * 2000)
-        assert abs(below.sel(axis=["x", "y"])).max() < 0.6 * speed
-        assert energy_residual(found) < 1e-6
     said = jointwave(*run, "--set", "boundaries.top=free", code=2).err
     free = "a side that sends them back, top, beside quiet ones"
     assert said.endswith(f"meet {free}: their field is not known in space yet\n")
