@@ -40,9 +40,10 @@ def active_effects(scene: AnyScene) -> list[str]:
 
 def _of_column(scene: Scene) -> Iterator[Called]:
     p, laws, random = calibrate(scene), [scene.joints, *scene.layers], scene.scatter
-    source = "damping.rayleigh" if scene.damping.rayleigh else "damping_ratio"
+    of_joints = "damping_ratio" if any(one.damping_ratio for one in laws) else "viscosity"
+    source = "damping.rayleigh" if scene.damping.rayleigh else of_joints
     damped = p.joint_time_constant is not None
-    yield "dashpots", damped and f"{source} is given", "no damping_ratio"
+    yield "dashpots", damped and f"{source} is given", "no damping_ratio, no viscosity"
     parts, differ, cause = len(p.each), len(p.soft), scene.off_axis
     yield "segments", parts > 1 and f"{parts} segments", "no [[segments]]"
     yield "scatter", random and f"seed {random.seed}", "no [scatter]"
@@ -75,9 +76,10 @@ def _of_joint_sets(scene: RockMass) -> Iterator[Called]:
         names = [one.name for one, there in zip(sets, has, strict=True) if there]
         return f"{why}: {', '.join(names)}" if names else ""
 
-    damped = of((one.damping_ratio is not None for one in sets), "damping_ratio is given")
+    dashpots = [(one.damping_ratio, one.viscosity) != (None, None) for one in sets]
+    damped = of(dashpots, "damping_ratio or viscosity is given")
     whole = scene.damping.rayleigh and "damping.rayleigh is given"
-    yield "dashpots", whole or damped, "no damping_ratio"
+    yield "dashpots", whole or damped, "no damping_ratio, no viscosity"
     rubs = [one.friction_angle is not None for one in sets]
     open_up = of((one.tension is False for one in sets), "tension = false")
     yield "no tension", open_up, _carries(any(rubs))

@@ -65,7 +65,7 @@ def _contradictions(
     }:
         yield "joints.normal_stiffness", None, "is required with pillar.joints"
     if "damping_ratio" in joints:
-        allowed = "needs a block between joints: with pillar.joints give damping.rayleigh"
+        allowed = "needs a block between joints: with pillar.joints give joints.viscosity"
         yield "joints.damping_ratio", joints["damping_ratio"], allowed
     for key in ("segments", "scatter"):
         if scene.get(key):

@@ -204,6 +204,7 @@ MISTAKES = {
     RAYLEIGH: {
         "joints.damping_ratio = 0.02": "damping.rayleigh already sets ... give one",
         "no joints.damping_ratio; soft_layers[0].damping_ratio = 0.1": "already sets ... give one",
+        "no joints.damping_ratio; joints.viscosity = 1e6 -> joints.viscosity": "of single joints",
         "damping.mass_proportional = 3.0": "damping.rayleigh already sets ... give one",
         "damping.rayleigh.ratios = [0.01, 0.1]": "alpha = -6.702 1/s ... beta = 0.002016 s",
         "damping.rayleigh.frequencies = [20.0, 20.0]": "increasing",

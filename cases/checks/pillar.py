@@ -126,6 +126,10 @@ def _of_support(scene: Scene) -> Iterator[Wrong]:
 
 
 def _of_damping(scene: Scene) -> Iterator[Wrong]:
+    cut = any(part.segment is None or scene.segments[part.segment].joints for part in scene.parts)
+    if cut and scene.joints.viscosity is not None:
+        allowed = "is of single joints: give it in [[soft_layers]], or pillar.joints"
+        yield "joints.viscosity", scene.joints.viscosity, allowed
     for table, law in [*scene.laws.items(), *scene.entries("segments")]:
         yield from within(table, of_damping(law, scene))
 

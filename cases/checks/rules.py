@@ -5,7 +5,7 @@ from math import ceil, floor, log10
 
 from jointwave.cases.scene_type import AnyScene
 from jointwave.cases.schema.joint import JointLaw
-from jointwave.cases.schema.law_parts import PARTS
+from jointwave.cases.schema.law_parts import AGAINST_VISCOSITY, PARTS
 from jointwave.cases.schema.pulse import shortest_period
 from jointwave.cases.schema.segment import Segment
 
@@ -54,10 +54,15 @@ def of_quality(scene: AnyScene) -> Iterator[Wrong]:
 
 
 def of_damping(law: JointLaw | Segment, scene: AnyScene) -> Iterator[Wrong]:
-    """Yield a damping ratio that is given together with Rayleigh damping."""
-    if scene.damping.rayleigh is not None and law.damping_ratio is not None:
-        allowed = "damping.rayleigh already sets the dashpots: give one of them"
-        yield "damping_ratio", law.damping_ratio, allowed
+    """Yield dashpots of a joint that are given twice, also by Rayleigh damping."""
+    viscosity = getattr(law, "viscosity", None)
+    for key, value in {"damping_ratio": law.damping_ratio, "viscosity": viscosity}.items():
+        if scene.damping.rayleigh is not None and value is not None:
+            allowed = "damping.rayleigh already sets the dashpots: give one of them"
+            yield key, value, allowed
+    for key in AGAINST_VISCOSITY if viscosity is not None else ():
+        if (value := getattr(law, key)) is not None:
+            yield key, value, "contradicts viscosity: give one of them"
 
 
 def of_strength(law: JointLaw) -> Iterator[Wrong]:

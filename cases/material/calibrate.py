@@ -111,7 +111,9 @@ def _springs(
             own[1, j] = 1 / given.shear_stiffness
         elif k and not scene.joints.shear_stiffness:
             own[1, j] = compliance * moduli[0, j] / moduli[1, j] - rock[1, j]
-        if scene.damping.rayleigh is not None or layer.damping_ratio is not None:
+        if layer.viscosity is not None:
+            own_eta[j] = layer.viscosity * own[0, j]
+        elif scene.damping.rayleigh is not None or layer.damping_ratio is not None:
             of = areal_mass[j], 1 / compliance
             viscous = compliance * joint_time_constant(scene, layer.damping_ratio, *of)
             own_eta[j] = max(0.0, viscous - rock[0, j] * rock_eta[j]) / own[0, j]

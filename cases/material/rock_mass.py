@@ -29,17 +29,20 @@ def set_time_constants(scene: RockMass) -> np.ndarray | None:
     """Return eta of each joint set, normal and shear, s [sets]; None without dashpots.
 
     The mass in c_n = 2 zeta sqrt(m k_n) is that of the rock from joint to joint: density times the
-    spacing, or half of the domain's extent across a single joint.
+    spacing, or half of the domain's extent across a single joint. A `viscosity` is c_n itself.
     """
     sets = scene.joint_sets
     if scene.damping.rayleigh is not None:
         beta = scene.damping.rayleigh.coefficients[1]
         return np.full(len(sets), beta) if beta else None
-    if not any(one.damping_ratio for one in sets):
+    if not any(one.is_damped for one in sets):
         return None
     corners, found = np.array(scene.domain.corners), []
     for one in sets:
         assert one.normal_stiffness is not None
+        if one.viscosity is not None:
+            found.append(one.viscosity / one.normal_stiffness)
+            continue
         extent = float(np.ptp(corners @ one.normal))
         mass = rocks_beside(scene, one)[0].density * (one.spacing or extent / 2)
         found.append(2 * (one.damping_ratio or 0.0) * sqrt(mass / one.normal_stiffness))

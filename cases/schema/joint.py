@@ -30,6 +30,8 @@ class JointLaw(Table):
     #: False: the joint carries no tension (10); True, absent: any, also with friction
     tension: bool | None = None
     damping_ratio: NonNegative | None = None  #: zeta; dashpot c_n = 2 zeta sqrt(m k_n)
+    #: Pa s/m, c_n of a joint itself, whatever the rock beside it; in shear c_n K_s / K_n
+    viscosity: NonNegative | None = None
     friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None  #: degrees (3)
     #: degrees, friction after slip of weakening_distance; its tangent falls linearly
     dynamic_friction_angle: Annotated[float, Field(ge=0, lt=90)] | None = None
@@ -47,6 +49,11 @@ class JointLaw(Table):
     residual_cohesion: NonNegative | None = None  #: Pa, cohesion after the first slip
     tensile_strength: Positive | None = None  #: Pa
     fracture_energy: Positive | None = None  #: J/m2
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether the joint has a dashpot of its own."""
+        return bool(self.damping_ratio or self.viscosity)
 
 
 class Joints(JointLaw):

@@ -10,6 +10,8 @@ from jointwave.cases.schema.joint import JointLaw, SoftLayer
 #: Strength (Pa) and critical opening (m) of a joint that never fails among joints that do, and
 #: maximum closure (m) of one that does not stiffen; its square does not overflow.
 UNLIMITED = 1e100
+#: Keys of dashpots that follow the stiffness of a joint, and change with it.
+AGAINST_VISCOSITY = ("damping_ratio", "maximum_closure")
 
 
 class LawPart(NamedTuple):
@@ -153,6 +155,8 @@ def under(layer: SoftLayer, joints: JointLaw) -> SoftLayer:
     """Return a layer with absent keys from [joints], except K_n and what contradicts its own."""
     own = {key for key in JointLaw.model_fields if getattr(layer, key) is not None}
     left = own | {"normal_stiffness"}
+    left |= {*AGAINST_VISCOSITY} if "viscosity" in own else set()
+    left |= {"viscosity"} if own & {*AGAINST_VISCOSITY} else set()
     for part in PARTS:
         against = set(part.instead_of)
         against.update(*(one.all_keys for one in PARTS if against & {*one.keys}))

@@ -193,7 +193,7 @@ def of_dashpot(table: str, ratio: float, length: str, eta: float) -> str:
     """Return the warning of a joint whose dashpot depends on a length that is none of its own."""
     return (
         f"{table}.damping_ratio = {ratio:g} takes {length} for the block on this joint: its "
-        f"dashpot, now {eta:.3g} s times its stiffness, changes with that length"
+        f"dashpot, now {eta:.3g} s times its stiffness, changes with that length (viscosity not)"
     )
 
 

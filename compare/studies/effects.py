@@ -53,7 +53,10 @@ REPORTED = {
 ALONG = (*SLIP, *(key for part in PARTS if part.along for key in part.all_keys))
 #: The changes that leave each effect out of a scene; `joints` stands for all its law tables.
 WITHOUT: dict[str, dict[str, Any]] = {
-    "dashpots": {"damping": {"rayleigh": None}, "joints": {"damping_ratio": None}},
+    "dashpots": {
+        "damping": {"rayleigh": None},
+        "joints": {"damping_ratio": None, "viscosity": None},
+    },
     "no tension": {"joints": {"tension": None}},
     "joints that differ": {"soft_layers": []},
     "scatter": {"scatter": None},

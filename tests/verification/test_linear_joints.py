@@ -9,9 +9,10 @@ than the bounds."""
 import numpy as np
 import pytest
 
+import jointwave as jw
 from closed_forms import one_joint, parallel_joints
 from jointwave import continuum
-from jointwave.cases.loads import load_history
+from jointwave.cases.loads import history_of, load_history
 
 PERIOD = 0.01  # s, of the Ricker wavelet's peak frequency
 DENSITY, MODULUS, SPEED = 2400.0, 9.6e9, 2000.0
@@ -95,3 +96,51 @@ def test_a_layer_replaces_a_joint_of_the_homogenised_bar(bar, law, kappa):
     found = shares(bar(soft_layers=[layer | law], pillar__block=0.5, **pressed))
     R, T = np.abs(one_joint.coefficients(1.0, kappa, 1.0)) if kappa else (0.0, 1.0)
     assert pytest.approx((R, T), abs=(np.pi / 10 * 0.5) ** 2 / 4) == found
+
+
+@pytest.mark.parametrize("viscosity", [0.0, 1e6, 1e7])
+def test_one_joint_with_its_own_dashpot(viscosity):
+    """|T| of K + i omega c in a pillar and in a rock mass. Rigid blocks put the rock of a block d
+    into the joint's contact, the share d K / M of its compliance, which bounds their error."""
+    omega, pillar_z, M = 2 * np.pi / PERIOD, DENSITY * SPEED, 1.2 * MODULUS  # nu = 0.25
+    K = pillar_z * omega / 2
+    bounds = {"exact": 1e-6, "continuum-jointed": 1e-4, "dem": 0.25 * K / M}
+    load = {"shape": "ricker", "amplitude": 1e6, "period": PERIOD}
+    rock = {"density": DENSITY, "intact_modulus": MODULUS, "intact_poisson": 0.25}
+    law = {"normal_stiffness": K, "viscosity": viscosity}
+    pillar = {
+        "title": "pillar",
+        "pillar": {"length": 60.0, "side": 0.5, "block": 0.25, "joints": [20.0]},
+        "joints": law,
+        "load": load,
+        "ends": {"start": "matched", "end": "matched"},
+        "record": {"stress": [30.0], "interval": 1e-4},
+    }
+    sides = dict.fromkeys(("left", "right"), "periodic") | dict.fromkeys(("bottom", "top"), "quiet")
+    joint = {"name": "joint", "dip": 0.0, "through": [1.0, 20.0], "shear_stiffness": K}
+    mass = {
+        "title": "rock mass",
+        "domain": {"size": [2.0, 40.0]},
+        "joint_sets": [joint | law],
+        "waves": [load | {"kind": "P", "direction": [0.0, 1.0]}],
+        "boundaries": sides,
+        "numerics": {"dem": {"block": 0.25}},
+        "record": {"points": [[1.0, 30.1]], "interval": 1e-4},
+    }
+    for tables, exact, z in (
+        (pillar, "jointed-bar", pillar_z),
+        (mass, "oblique-joint", np.sqrt(DENSITY * M)),
+    ):
+        scene = jw.load(tables | {"rock": rock, "time": {"duration": 0.1}})
+        for solver, bound in bounds.items():
+            result = jw.simulate(scene, exact if solver == "exact" else solver)
+            times = result.time.values
+            if exact == "jointed-bar":
+                incident, wave = load_history(scene).value(times - 30.0 / SPEED) / 2, result.stress
+            else:
+                at = 30.1 * np.sqrt(DENSITY / M)
+                incident = history_of(scene.waves[0], 1e6 / z).value(times - at)
+                wave = result.velocity[..., 1]
+            passed = amplitude(times, wave.values[0]) / amplitude(times, incident)
+            expected = abs(one_joint.coefficients(omega, K, z, viscosity)[0])
+            assert passed == pytest.approx(expected, rel=bound)

@@ -34,7 +34,7 @@ def holds(scene: RockMass, held: tuple[str, ...], *against: tuple[bool, str]) ->
     held : physics that it covers, by the names below. against : other reasons against it.
     """
     gravity = scene.gravity is not None and bool(scene.gravity.acceleration)
-    damped = any(one.damping_ratio for one in scene.joint_sets)
+    damped = any(one.is_damped for one in scene.joint_sets)
     physics = {
         "no waves": (not scene.waves, "no wave enters"),
         "waves": (bool(scene.waves), "a wave enters"),

@@ -56,7 +56,7 @@ def applies(scene: RockMass) -> Answer:
     ways = {np.sign(normal @ one.direction) for one in scene.waves}
     answer = Answer.unless(
         *(_too_stiff(scene, one) for one in scene.waves),
-        (any(one.damping_ratio for one in sets), "the joint is damped"),
+        (any(one.is_damped for one in sets), "the joint is damped"),
         (oblique, "a wave is not one at normal incidence"),
         (len(waves) < len(scene.waves), "several waves are of one kind"),
         (len(ways) > 1, "waves meet the joint from both sides"),

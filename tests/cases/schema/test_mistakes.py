@@ -120,6 +120,9 @@ IN_PLANE = {
     ),
     "damping.rayleigh = { frequencies = [1.0, 9.0], ratios = [0.1, 0.1] }; "
     "joint_sets[1].damping_ratio = 0.1": "damping.rayleigh",
+    "joint_sets[1].damping_ratio = 0.1; joint_sets[1].viscosity = 1e6 -> joint_sets[1].damping": (
+        "contradicts viscosity: give one of them"
+    ),
     # receivers
     "record.points = [[40.0, 41.0]] -> record.points[0] = [40.0, 41.0]": "lie in the domain",
     "record.points = [[1, 1], [30, 20]] -> record.points[1] = [30.0, 20.0]": "outside its openings",
