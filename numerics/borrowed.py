@@ -9,6 +9,8 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic, models, register_model
 
+from jointwave.joints.formula import formula
+
 
 class Borrowed(types.Array):
     """The numba type of an array, and of its views, without counted references."""
@@ -39,10 +41,15 @@ def lent(kind: Any) -> Any:
 
 
 @intrinsic
-def borrowed(typing, values):
-    """Return an array, or a nested tuple of arrays, without counted references."""
+def _borrowed(typing, values):
 
     def generate(context, builder, signature, arguments):
         return arguments[0]  # is stored alike
 
     return lent(values)(values), generate
+
+
+@formula  # the name of an intrinsic differs in every process, see `denormals`
+def borrowed(values):
+    """Return an array, or a nested tuple of arrays, without counted references."""
+    return _borrowed(values)

@@ -1,8 +1,9 @@
 """Compilation of kernels: one set of options, one cache keyed by the sources."""
 
 import logging
-from collections.abc import Callable
-from contextlib import suppress
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache, wraps
 from hashlib import sha256
 from pathlib import Path
@@ -16,12 +17,18 @@ from jointwave.numerics.cache import cache_directory, make, mark_used, one_proce
 
 WAIT = 1.5  # s, after which compiling is announced: cached kernels load in less, also under load
 
+#: numba's threading layers, best first: OpenMP's threads spin while they wait, 2 us for each loop;
+#: those of the others sleep, 150 us.
+LAYERS = ["omp", "tbb", "workqueue"]
+#: Kinds of parallel code that numba is not to make.
+OTHERS = "comprehension", "reduction", "inplace_binop", "setitem", "numpy", "stencil", "fusion"
+
 #: Directory of the cache, set for each kernel: numba resets its own when its environment changes.
 DIRECTORY = cache_directory(Path(__file__).resolve().parent.parent)
 mark_used(DIRECTORY)
 
 
-def jitted(function: Callable, flags: Any = None) -> Callable:
+def jitted(function: Callable, flags: Any = None, threaded: bool = False) -> Callable:
     """Compile a kernel for the types of its arguments when it is first called with them.
 
     It is cached on disk, has IEEE arithmetic (fastmath would break bit-identity), and releases the
@@ -29,6 +36,7 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
 
     flags : nested tuples of plain values that determine the closure. They are part of the name in
     the cache, so that several processes can compile kernels of different flags at the same time.
+    threaded : whether loops over `prange` are shared by threads, see `limited_threads`.
     """
     if numba.config.DISABLE_JIT:
         raise SceneError("NUMBA_DISABLE_JIT", "", None, "must be 0: both engines are compiled")
@@ -36,6 +44,8 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
         function.__qualname__ += f".{sha256(repr(flags).encode()).hexdigest()[:8]}"
     numba.config.CACHE_DIR = str(DIRECTORY)
     options = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    if threaded:
+        options["parallel"] = {"prange": True} | dict.fromkeys(OTHERS, False)
     try:
         kernel = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # neither our cache, nor numba's own, nor the sources can be written
@@ -53,6 +63,19 @@ def jitted(function: Callable, flags: Any = None) -> Callable:
         return kernel(*arguments)
 
     return call
+
+
+@contextmanager
+def limited_threads(count: int) -> Iterator[None]:
+    """Let the loops of threaded kernels use at most `count` threads, as long as this holds."""
+    if "NUMBA_THREADING_LAYER_PRIORITY" not in os.environ:
+        numba.config.THREADING_LAYER_PRIORITY = LAYERS
+    before = numba.get_num_threads()
+    numba.set_num_threads(min(count, numba.config.NUMBA_NUM_THREADS))
+    try:
+        yield
+    finally:
+        numba.set_num_threads(before)
 
 
 def kind(value: Any) -> Any:

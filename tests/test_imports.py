@@ -15,7 +15,7 @@ PRIVATE = ("numba.core", "numba._", "numba.np", "llvmlite")
 
 COMPILER_INSIDE = {"numerics/denormals.py"}  # one intrinsic that flushes denormals
 #: Settings that a library documents as such.
-SETTINGS = {"numba.config.CACHE_DIR"}
+SETTINGS = {"numba.config.CACHE_DIR", "numba.config.THREADING_LAYER_PRIORITY"}
 MOST_ARGUMENTS = 12
 GONE = {"ptp", "itemset", "newbyteorder"}  # of arrays
 

@@ -8,26 +8,18 @@ import numpy as np
 from jointwave.dem.contacts.chunks import LANES, marks
 from jointwave.dem.kernel.loop import loop_for
 from jointwave.dem.kernel.model import Model, Samples, State
-from jointwave.dem.kernel.parts import Part, add_up, divided, flat, part_of, take_together, work_for
+from jointwave.dem.kernel.parts import (
+    ChunkTable,
+    bands_for,
+    collect,
+    divided,
+    hand_out,
+    parts_of,
+    work_for,
+)
 from jointwave.dem.kernel.rotation import free_motion
 from jointwave.dem.sides.shaking import motion_of_walls
-
-
-class ChunkTable(NamedTuple):
-    """Contacts as arguments of the kernel.
-
-    pair, table, row_from : as in `chunks.Chunks`. laws : table of the joint laws. tiles : first
-    chunk, block, held block, recorded block and watched contact of each tile [5, tiles + 1].
-    seen : places and sample rows of watched contacts [2, w]. contacts : their number.
-    """
-
-    pair: np.ndarray
-    table: np.ndarray
-    row_from: np.ndarray
-    laws: np.ndarray
-    tiles: np.ndarray
-    seen: np.ndarray
-    contacts: int
+from jointwave.numerics.jit import limited_threads
 
 
 class BlockTable(NamedTuple):
@@ -100,13 +92,14 @@ def make_stepper(
     ends, depth = divided(chunks, state.history, f, threads)
     bands = max(1, -(-stages * most // depth))
     depth = max(1, -(-stages * most // bands))  # bands of equal depth
-    loop, inertia = loop_for(form), model.inertia.ravel()
+    several, inertia = len(ends) > 2, model.inertia.ravel()
+    loop = bands_for(form) if several else loop_for(form)
     mass = np.ascontiguousarray(own.inertia[:, 0] if own.mass is None else own.mass)
     first_place, places = marks(model.places, chunks.first_block)
     first_seen, seen = marks(chunks.place[model.watched], LANES * chunks.first_chunk)
     first_held = np.searchsorted(np.zeros(0) if held is None else held, chunks.first_block)
     tiles = np.stack([chunks.first_chunk, chunks.first_block, first_held, first_place, first_seen])
-    between = ChunkTable(
+    table = ChunkTable(
         chunks.pair, chunks.table, chunks.row_from, model.laws, tiles, seen,
         len(chunks.place),
     )  # fmt: skip
@@ -116,10 +109,9 @@ def make_stepper(
         free_motion(own) if form.finite else None, dt, own.keep, own.local, own.stages,
     )  # fmt: skip
     size = form.buffer.before + f * int(np.diff(chunks.first_block).max())
-    works = [work_for(inertia.size, size, depth, form.ledger) for _ in ends[1:]]
-    whole = Part(ends[0], ends[-1], tiles, state, samples, works[0])
-    shares = zip(ends[:-1], ends[1:], works, strict=True)
-    parts = [part_of(whole, *one) for one in shares] if len(works) > 1 else []
+    work = work_for(inertia.size, size, depth, form.ledger, len(ends) - 1)
+    flat = state._replace(u=state.u.reshape(-1), v=state.v.reshape(-1))
+    parts = parts_of(state, samples, tiles, ends, work) if several else None
 
     def take(stride: int, first: int, last: int, keep: float = own.keep) -> None:
         count = last - first
@@ -128,18 +120,14 @@ def make_stepper(
         if walls is not None and shake is not None:
             walls[: count + 1] = motion_of_walls(state, shake[:count], dt)
         damped = blocks._replace(keep=keep)
-        steps = stages * first, stages * last, depth
-
-        def advance(part: Part, begin: int, end: int) -> None:
-            span = part.first, part.last, steps[0], begin, end, stages * stride, depth
-            table = between._replace(tiles=part.tiles)
-            loop(table, damped, flat(part.state), part.samples, drive, walls, part.work, span)
-
-        if not parts or first == last:  # without a step: compiles only
-            advance(whole, *steps[:2])
+        span = stages * first, stages * first, stages * last, stages * stride, depth
+        if parts is not None:
+            hand_out(state, parts, model.walls)
+            with limited_threads(len(ends) - 1):
+                loop(table, damped, *parts, drive, walls, span)
+            collect(state, samples, parts, slice(-(-first // stride), -(-last // stride)))
         else:
-            take_together(whole, parts, model.walls, steps, advance)
-            add_up(whole, parts, slice(-(-first // stride), -(-last // stride)))
+            loop(table, damped, flat, samples, drive, walls, work, (0, ends[-1], *span))
         if walls is not None:
             u, v = walls[count].reshape(2, -1, f)[:, 1:]
             state.u[-model.walls :], state.v[-model.walls :] = u, v

@@ -171,13 +171,14 @@ def take_out(ledger, row, width):
 def loop_for(form: KernelFlags) -> Callable:
     """Return the time loop of blocks with these effects; absent ones are not compiled.
 
-    One function: numba would optimise a called function alone and again in each caller.
+    It is a formula as well, for `parts`. One function: numba would optimise a called function alone
+    and again in each caller.
     """
     dim, freedoms, finite, has_ledger = form.dim, form.freedoms, form.finite, form.ledger
     dashpots, varied, rated, drags = form.parts.dashpots, form.parts.varied, form.rated, form.drags
     stages, composed, matched, shaken = form.stages, form.stages > 1, form.matched, form.shaken
     in_line, used, widths = dim == 1, rows_of(form.parts), widths_of(form)
-    remembers = form.history.size > 0 or (form.points and form.point.size > 0)
+    remembers = form.remembers
     LAW, JUMP, RATE, ON_J = form.buffer.law, form.buffer.jump, form.buffer.rate, form.buffer.on_j
     relative, onto_blocks, move = relative_for(form), onto_blocks_for(form), motion_for(form)
     forces = point_forces_for(form) if form.points else face_forces_for(form)
@@ -185,13 +186,14 @@ def loop_for(form: KernelFlags) -> Callable:
     record_contacts, record_blocks = records_for(form)
     row_forces = row_forces_for(form, record_contacts)
 
+    @formula
     def loop(chunks, blocks, state, samples, drive, walls, work, span):
         """Take the steps begin .. end - 1 of the tiles first .. last - 1, in bands of `depth`.
 
         Diagonal k of a band takes step j of tile k - j. Tiles outside first .. last - 1 also take
         the steps on which later steps of the band depend, and are left with incomplete motion.
 
-        chunks, blocks, state, samples : `leapfrog.ChunkTable`, `leapfrog.BlockTable`, `State`,
+        chunks, blocks, state, samples : `parts.ChunkTable`, `leapfrog.BlockTable`, `State`,
         `Samples`. drive : forces on held blocks in each step or stage from `origin` on. walls :
         motion of walls, likewise. work : `parts.Work`.
         """
@@ -269,7 +271,7 @@ def loop_for(form: KernelFlags) -> Callable:
             if has_ledger:
                 for j in range(band, band + steps):
                     one = work.ledgers[j - band]
-                    for term in range(state.sums.size):
+                    for term in range(samples.energy.shape[0]):
                         row, sampled = term * L, j % stride == 0
                         summed = row in SUMMED
                         width = widths[term] if sampled or summed else 0

@@ -154,6 +154,11 @@ class KernelFlags(NamedTuple):
         )
 
     @property
+    def remembers(self) -> bool:
+        """Whether contacts have a history."""
+        return self.history.size > 0 or (self.points and self.point.size > 0)
+
+    @property
     def point(self) -> Any:
         """Rows of a point's history: slide, largest opening, m, steps until it broke, cohesion, Pa,
         path, m."""
