@@ -16,7 +16,7 @@ from jointwave.compare.cli.options import SceneOptions
 from jointwave.compare.cli.studies import sweep
 from jointwave.compare.engines import ENGINES, in_words, label_of
 from jointwave.compare.figures import tables
-from jointwave.compare.misfit.pairs import GIVEN, Comparison, unit_doubts
+from jointwave.compare.misfit.pairs import GIVEN, Comparison, chaos, unit_doubts
 from jointwave.compare.misfit.ranking import applicable, deciding
 from jointwave.compare.report import report as pages
 from jointwave.compare.report.verdict import EngineScore, engine_scores, verdict_table, verdicts
@@ -81,7 +81,7 @@ def show_comparisons(
     """
     for one in found:
         ledgers = (open_ledger(r) for r in one.results.values() if "energy" in r)
-        lines = [*filter(None, ledgers), *unit_doubts(one)]
+        lines = [*filter(None, ledgers), *chaos(one.results), *unit_doubts(one)]
         terminal.say_warnings(f"{one.scene.name}: {line}".lstrip(": ") for line in lines)
     if as_json:
         terminal.print_json([_facts(one, reads) for one in found])

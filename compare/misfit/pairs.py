@@ -155,6 +155,17 @@ def measure_curves(
     return rows
 
 
+def chaos(results: dict[str, xr.Dataset]) -> Iterator[str]:
+    """Yield from when on the motion of rattling blocks is chaotic, if an exact chain knows it."""
+    for name, result in results.items():
+        if "events" in result.attrs and "known_until" in result.attrs:
+            yield (
+                f"blocks rattle chaotically: from {result.attrs['known_until']:.4g} s on "
+                f"{label_of(name)} is not known, and engines differ by any amount: compare them "
+                "up to then (time.duration), or with dashpots (joints.damping_ratio)"
+            )
+
+
 def unit_doubts(found: Comparison) -> Iterator[str]:
     """Yield external curves without a unit whose size differs from the first solution's, and
     stresses that begin without the scene's static stress."""

@@ -4,7 +4,7 @@ A point is ranked by the largest error among itself and all finer points of its 
 grows again with refinement was small by chance.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import isnan
 from typing import Any, NamedTuple
 
@@ -118,10 +118,23 @@ def sentences(study: Study, table: pd.DataFrame) -> list[str]:
             )
     if failed := int((table["state"] == "failed").sum()):
         found.append(f"{failed} of {len(table)} points failed; they are listed in the table.")
-    return found + [
+    return [*found, *_equal_steps(study, table)] + [
         f"{one.curve}: measured order {one.measured:.2f} in {one.key}, theory {one.theory:g}."
         for one in orders(study, table)
     ]
+
+
+def _equal_steps(study: Study, table: pd.DataFrame) -> Iterator[str]:
+    """Yield curves of which points that differ in a step key alone have the same time step."""
+    for curve in study.curves:
+        points = table[table["curve"] == curve.label].dropna(subset="dt")
+        for key in (key for key in curve.vary if "step" in key):
+            rest = points["settings"].map(lambda of, key=key: repr(of | {key: None}))
+            if same := int(points.assign(rest=rest).duplicated(["rest", "dt"], keep=False).sum()):
+                yield (
+                    f"{curve.label}: {same} of {len(points)} points have the time step of another "
+                    f"one: {key} is rounded so that steps divide record.interval."
+                )
 
 
 def _cheapest(table: pd.DataFrame, target: float) -> str:

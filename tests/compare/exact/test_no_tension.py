@@ -15,6 +15,7 @@ from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.exact.blocks.events import integrate
 from jointwave.compare.exact.blocks.pillar import system_of
 from jointwave.compare.exact.blocks.row_of_blocks import receivers
+from jointwave.compare.misfit.pairs import chaos
 
 D, C = 0.5, 1350.0  # m, about the paper's bar speed, m/s
 ENDS = [("free", "free"), ("free", "fixed"), ("quiet", "fixed"), ("free", "quiet")]
@@ -144,6 +145,8 @@ def test_the_time_is_said_from_which_bouncing_is_chaotic(tmp_path):
     error, known = stress[0] - found.stress.values[0], times <= until
     assert np.sqrt((error[known] ** 2).mean()) < found.stress_error.values[0]
     assert np.abs(error).max() > 1e-4 * np.abs(stress).max()
+    (line,) = chaos({"no-tension-chain": found, "dem": found.drop_attrs()})
+    assert line.startswith(f"blocks rattle chaotically: from {until:.4g} s on no-tension chain")
 
 
 @pytest.mark.parametrize("end", ["free", "quiet", "matched", "fixed"])

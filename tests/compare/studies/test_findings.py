@@ -63,6 +63,15 @@ def test_the_floor_of_totals_is_that_of_the_finest_physics():
     assert floor(judged([known, coarse]), "numerical") == 0.1
 
 
+def test_points_with_equal_time_steps_are_named(study):
+    key = "numerics.dem.step_fraction"
+    rows = [row(settings={key: v}, dt=dt) for v, dt in ((0.1, 1e-5), (0.11, 1e-5), (0.2, 2e-5))]
+    curve = {"label": "a", "method": "dem", "vary": {key: [0.1, 0.11, 0.2]}}
+    (line,) = sentences(study([curve]), judged(rows))
+    assert line.startswith(f"a: 2 of 3 points have the time step of another one: {key} is rounded")
+    assert not sentences(study([curve]), judged(rows[1:]))
+
+
 def test_sentences_hold_for_their_numbers(study):
     """The next best within the same misfit, not the most expensive."""
     numbers = zip((0.05, 0.02, 0.005, 0.004, 0.003), (1, 2, 4, 12.0, 900.0), "ababc", strict=True)
