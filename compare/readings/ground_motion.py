@@ -5,6 +5,7 @@ except that spectra of a velocity use its slopes between samples as acceleration
 linear between these, and the peak velocity of an acceleration is that at its samples.
 """
 
+import logging
 from collections.abc import Sequence
 from math import ceil, pi, sqrt
 
@@ -15,19 +16,30 @@ from jointwave.cases.errors import SceneError, require
 from jointwave.compare.readings.recordings import Recording, recording, sampling, variables
 from jointwave.results.dataset import A_RESULT
 
+log = logging.getLogger("jointwave")
+
 GRAVITY = 9.81  # m/s2
+MOVES_ON = 0.5  # of the peak: velocity at the end of an acceleration that is doubted
 POINTS = 1024  # per period of an oscillator, at which its displacement is evaluated
 
 
 def ppv(result: Recording, quantity: str = "velocity") -> xr.DataArray:
     """Return the peak particle velocity (length of the vector) at every receiver, m/s.
 
-    An acceleration is integrated, from rest at its first sample. quantity : of a recording that
-    does not name its own.
+    An acceleration is integrated, from rest at its first sample; a warning names what it leaves.
+    quantity : of a recording that does not name its own.
     """
     found = recording(result, quantity)
     if "velocity" not in found:
-        found = _of(found, "acceleration").cumulative_integrate("time").to_dataset(name="velocity")
+        velocity = _of(found, "acceleration").cumulative_integrate("time")
+        left, peak = (abs(one).max().item() for one in (velocity[..., -1], velocity))
+        if left > MOVES_ON * peak:
+            log.warning(
+                "warning: acceleration: its integral ends at %.3g m/s: an offset of %.3g m/s2, or a"
+                " record that ends within the motion; subtract its mean before",
+                *(left, left / np.ptp(velocity["time"].values)),
+            )
+        found = velocity.to_dataset(name="velocity")
     return _peak(found["velocity"], "axis", "time")
 
 

@@ -96,9 +96,10 @@ def test_files_of_recorders_are_read_like_arrays(files):
     assert found.values[0] == pytest.approx(np.outer([0.6, 0.8], plain), rel=1e-12)
 
 
-def test_peaks_and_intensities_of_an_acceleration(files):
+def test_peaks_and_intensities_of_an_acceleration(files, caplog):
     """PPV is the vector's, from rest; the intensity of straight lines is a dt (a_0^2 + a_0 a_1 +
-    a_1^2) / 3 an interval. To those of the velocity by the error of 200 samples a period."""
+    a_1^2) / 3 an interval. To those of the velocity by the error of 200 samples a period. What an
+    offset leaves at the end is said."""
     velocity = velocity_of(200)
     for read in (jw.ppv, jw.arias):
         found = read(files["two.txt"]).sum().item()
@@ -114,6 +115,10 @@ def test_peaks_and_intensities_of_an_acceleration(files):
     intensity = jw.arias(ramp, gravity=10.0, quantity="acceleration")
     assert intensity.item() == pytest.approx(np.pi / 20 * 3.0)  # of 9 t^2
     assert jw.ppv(ramp, "acceleration").item() == pytest.approx(1.5)
+    caplog.clear()
+    assert jw.ppv((range(4), [1.0, 4.0, -2.0, 1.0]), "acceleration").item() == 3.5
+    (line,) = caplog.messages
+    assert "its integral ends at 3 m/s: an offset of 1 m/s2" in line
 
 
 def test_the_name_of_a_column_tells_its_quantity(tmp_path, caplog):
@@ -121,7 +126,7 @@ def test_the_name_of_a_column_tells_its_quantity(tmp_path, caplog):
     not there is said."""
     path = tmp_path / "one.csv"
     for name in ("Acceleration", "Radial acceleration"):
-        path.write_text(f"time [s],{name}\n0,0\n1,3\n")
+        path.write_text(f"time [s],{name}\n0,0\n1,3\n2,-3\n3,0\n")
         assert jw.ppv(path).item() == pytest.approx(1.5)
     for name, words in (("stress", "must be recorded"), ("velocity@4 mm", "must be as velocity_x")):
         path.write_text(f"time [s],{name}\n0,0\n1,3\n")
