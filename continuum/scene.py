@@ -1,8 +1,12 @@
 """The body of a scene: a rock mass in the plane or in space, or a pillar."""
 
-from collections.abc import Iterable, Sequence
+import pickle
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import replace
-from typing import NamedTuple
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,6 +36,8 @@ from jointwave.continuum.space.model import Body
 from jointwave.continuum.space.own_rock import materials_of
 from jointwave.continuum.space.rock import Material, Rock
 from jointwave.continuum.validity import dimension_of
+
+KEPT = 8  # bodies
 
 
 class SceneBody(NamedTuple):
@@ -68,8 +74,8 @@ class SceneBody(NamedTuple):
         return moduli
 
 
-#: The resolved scene, its blocks, contacts across periodic sides, elements, and materials.
-Meshed = tuple[AnyScene, Blocks, list[Across], Elements, list[Material]]
+#: Resolved scene, blocks, contacts across periodic sides, arguments of `Elements`, and materials.
+Meshed = tuple[AnyScene, Blocks, list[Across], tuple[Any, ...], list[Material]]
 
 
 def body_of(
@@ -84,18 +90,41 @@ def body_of(
             meshed = _pillar(scene, model, dimension_of(scene, dim))
         else:
             meshed = _rock_mass(scene, model)
-        resolved, blocks, across, elements, own = meshed
+        resolved, blocks, across, given, own = meshed
         if rock is None:
-            of_cell = blocks.body.region[elements.block]
-            forms = materials.rock_of_cells(elements.space, own, of_cell)
+            body, of_cell = _build.get()(given, own, blocks.body.region)
         else:
+            elements = Elements(*given)
             forms = rock(scene, elements.space)
             own, of_cell = materials_of(scene, elements.space, forms, own)
-        body = elements.body(forms)
+            body = elements.body(forms)
     except ImportError as error:
         key, cell = "numerics.continuum.cell", scene.numerics.continuum.cell
         raise SceneError(scene.where, key, cell, str(error)) from None
     return SceneBody(resolved, blocks, across, own, of_cell, rock is not None, body, model)
+
+
+def _built(
+    given: tuple[Any, ...], own: list[Material], region: np.ndarray
+) -> tuple[Body, np.ndarray]:
+    """Return a body, and the index of the material of each cell; region : index of each block."""
+    elements = Elements(*given)
+    of_cell = region[elements.block]
+    return elements.body(materials.rock_of_cells(elements.space, own, of_cell)), of_cell
+
+
+_build = ContextVar("_build", default=_built)
+
+
+@contextmanager
+def bodies_kept() -> Iterator[None]:
+    """Let runs of equal rock and elements share a body, which is built, and warned of, once."""
+    kept = lru_cache(KEPT)(lambda parts: _built(*pickle.loads(parts)))
+    before = _build.set(lambda *parts: kept(pickle.dumps(parts)))
+    try:
+        yield
+    finally:
+        _build.reset(before)
 
 
 def _rock_mass(scene: RockMass, model: str) -> Meshed:
@@ -116,8 +145,8 @@ def _rock_mass(scene: RockMass, model: str) -> Meshed:
         faces = [facing(mesh, body, *one) for one in zip(across, first[:-1], strict=True)]
     except GeometryError as error:
         raise SceneError(scene.where, error.key, None, str(error)) from None
-    elements = Elements(mesh, marks, scene.numerics.continuum.order, body.dim, faces)
-    return resolved, blocks, across, elements, materials.rock_mass(scene, smeared, model)
+    given = mesh, marks, scene.numerics.continuum.order, body.dim, faces
+    return resolved, blocks, across, given, materials.rock_mass(scene, smeared, model)
 
 
 def _mesh_of_rock_mass(scene: RockMass, blocks: Blocks, across: list[Across]) -> Conforming:
@@ -172,8 +201,8 @@ def _pillar(scene: Scene, model: str, dim: int) -> Meshed:
     else:
         blocks, mesh, marks = mesh_of_file(scene, joints.number, dim)
     flat = scene.motion.rotation == "none" and dim > 1
-    elements = Elements(mesh, marks, numerics.order, size, flat=flat)
-    return scene, blocks, [], elements, materials.pillar(scene, model, size, dim, less)
+    given = mesh, marks, numerics.order, size, (), flat
+    return scene, blocks, [], given, materials.pillar(scene, model, size, dim, less)
 
 
 def _mesh_of_pillar(scene: Scene, blocks: Blocks, each: np.ndarray, components: int) -> Conforming:

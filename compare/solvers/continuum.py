@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -56,6 +57,13 @@ def prepare(scene: AnyScene, model: str) -> Prepared:
     return Prepared(choice.scheme, time.steps, time.dt, plan.critical, freedoms, size, settings)
 
 
+def bodies_kept() -> AbstractContextManager[None]:
+    """Return a context in which runs share equal bodies."""
+    from jointwave.continuum.scene import bodies_kept
+
+    return bodies_kept()
+
+
 def libraries() -> dict[str, str]:
     """Return the version of dolfinx."""
     from jointwave.continuum.space.fenicsx import dolfinx
@@ -78,6 +86,7 @@ def _of(model: str, **about: Any) -> Solver:
         schemes=("explicit", "implicit"),
         cost=("scheme", "dim", "cell", "order", "processes"),
         shares=True,
+        bodies_kept=bodies_kept,
         libraries=libraries,
         **about,
     )

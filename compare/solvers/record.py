@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -146,7 +147,8 @@ class Solver:
         [numerics].
     schemes : of time stepping. per_block : whether a step's cost is counted per block, else per
         degree of freedom. cost : the settings that set the cost of a step.
-    shares : whether several processes can share a run.
+    shares : whether several processes can share a run. bodies_kept : returns a context in which
+        runs share equal bodies, each built once; their set-up is then not that of a run alone.
     libraries : versions that affect the bits of a result, besides those of numpy and numba.
     """
 
@@ -169,6 +171,7 @@ class Solver:
     per_block: bool = False
     cost: tuple[str, ...] = ()
     shares: bool = False
+    bodies_kept: Callable[[], AbstractContextManager[None]] = nullcontext
     libraries: Callable[[], dict[str, str]] = dict
     sentence: str = ""
 

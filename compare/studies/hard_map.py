@@ -57,7 +57,6 @@ def computed(column: Row) -> Row:
     # Ratios proportional to frequencies give a zero Rayleigh alpha.
     rayleigh = {"frequencies": [1.0, 2.0], "ratios": [pi * beta, 2 * pi * beta]}
     damping = {"damping.rayleigh": rayleigh}
-    own = _prepared(column["engine"], damping)
 
     def is_stable(dt: float) -> bool:
         fraction = dt / own * (1 + 1e-9)
@@ -67,7 +66,9 @@ def computed(column: Row) -> Row:
             return False
         return True
 
-    return column | {"stable": [is_stable(x * critical) for x in column["steps"]]}
+    with engine.bodies_kept():
+        own = _prepared(column["engine"], damping)
+        return column | {"stable": [is_stable(x * critical) for x in column["steps"]]}
 
 
 def cells_to_run(column: Row) -> tuple[AnyScene, str, int]:

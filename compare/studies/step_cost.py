@@ -42,16 +42,17 @@ def step_costs(scenes: Sequence[AnyScene], name: str = DEM.name) -> list[StepCos
     of the machine affects all of them. The rates are saved, see `compare.runs.timings`.
     Raises SceneError if the engine does not apply, UnstableError if a run becomes unstable.
     """
-    short = [shortened(scene, name, threads=1) for scene in scenes]
-    for scene in short:
-        solve(name, scene)  # compiles
-    found: list[list[float]] = [[] for _ in short]
-    for _ in range(REPEATS):
-        for scene, costs in zip(short, found, strict=True):
-            about = solve(name, scene).attrs
-            timings.note(name, scene, about)
-            steps = about["steps"] * ENGINES[name].units(scene, about["degrees_of_freedom"])
-            costs.append(1e9 * float(about["seconds_stepping"]) / steps)
+    found: list[list[float]] = [[] for _ in scenes]
+    with solver(name).bodies_kept():
+        short = [shortened(scene, name, threads=1) for scene in scenes]
+        for scene in short:
+            solve(name, scene)  # compiles
+        for _ in range(REPEATS):
+            for scene, costs in zip(short, found, strict=True):
+                about = solve(name, scene).attrs
+                timings.note(name, scene, about)
+                steps = about["steps"] * ENGINES[name].units(scene, about["degrees_of_freedom"])
+                costs.append(1e9 * float(about["seconds_stepping"]) / steps)
     return [StepCost(min(ns), median(ns) - min(ns)) for ns in found]
 
 

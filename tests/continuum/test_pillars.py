@@ -7,7 +7,7 @@ from jointwave.cases.errors import SceneError
 from jointwave.cases.loads import load_history, step_means
 from jointwave.continuum.loads.forces import force_and_moment, pushes
 from jointwave.continuum.run import simulate
-from jointwave.continuum.scene import body_of
+from jointwave.continuum.scene import bodies_kept, body_of
 from tests.continuum.bodies import BLOW, blow, oblique
 
 STILL = {"load": {"shape": "step", "amplitude": 0.0}}
@@ -36,6 +36,24 @@ def test_loads_have_their_force_and_moment(short, load, cell):
         assert share.sum(axis=0) == pytest.approx(area * force, abs=1e-12)
         around = np.cross(body.x, share).sum(axis=0)
         assert around == pytest.approx(area * moment, abs=1e-12)
+
+
+def test_runs_share_a_body_only_of_equal_rock_and_elements(short):
+    """Elements follow dashpots, and the duration where pulses have no period; results do not tell
+    whose body it is."""
+    elements = {"numerics": {"elements_per_block": None}, "time__duration": 0.01}
+    loss = {"joints__tension": False, "ends__end": "quiet"}
+    scene, other = short(**STILL | elements), short(**STILL | elements | loss)
+    moved = short(numerics={"scheme": "explicit"}, **loss)
+    with bodies_kept():
+        body = body_of(scene).body
+        assert body_of(other).body is body
+        for key in ("time__duration", 0.02), ("joints__damping_ratio", 0.1), ("rock__density", 2e3):
+            assert body_of(short(**STILL | elements | dict([key]))).body is not body
+        simulate(short(numerics={"scheme": "implicit"}))
+        shared = simulate(moved)
+    assert body_of(scene).body is not body
+    assert simulate(moved).equals(shared) and float(abs(shared.stress).max()) > 0
 
 
 @pytest.mark.parametrize(("dim", "rock"), [(2, "4.13"), (3, "1.33")])
