@@ -25,7 +25,7 @@ FIXED = (
     *("expect.*", "domain.*", "regions.*.dip", "segments.*.y", "segments.*.block"),
     *("joint_sets.*.dip", "joint_sets.*.spacing", "joint_sets.*.offset", "joint_sets.*.scatter*"),
 )
-UNIT = re.compile(r"(kg/m3|Pa/m|Pa|m/s2?|m|1/s|s|Hz|degrees|J/m2)(?=[,; ]|$)")
+UNIT = re.compile(r"(kg/m3|Pa/m|Pa s/m|Pa|m/s2?|m|1/s|s|Hz|degrees|J/m2)(?=[,; ]|$)")
 FORMS = "must be KEY, KEY=START or KEY=LOW:START:HIGH, of numbers, LOW first"
 
 

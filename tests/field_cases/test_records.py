@@ -281,6 +281,7 @@ def test_a_force_is_in_newtons_in_space_and_per_metre_in_the_plane(tmp_path, mon
         assert unit_of("loads.0.amplitude", scene) == unit
         axes = scene_figure("a", [Comparison(scene)]).figure.axes
         assert f"(k{unit})" in " ".join(ax.get_title("left") + ax.get_title() for ax in axes)
+    assert unit_of("joints.viscosity", jointwave.load("guo-li-2002/fig-03", "")) == "Pa s/m"
 
 
 def test_units_of_headers():
