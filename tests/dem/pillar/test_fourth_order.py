@@ -82,9 +82,10 @@ def test_no_tension_converges_at_second_order(fourth):
     """The force has a kink where a joint opens or closes: order two, if not at every halving."""
     changes = {
         "joints__tension": False,
+        "pillar__length": 20.0,
         "prestress": {"normal": 3e5},
-        "time__duration": 0.05,
-        "record": {"stress": [20.0], "interval": 1e-3},
+        "time__duration": 0.025,
+        "record": {"stress": [8.0], "interval": 5e-4},
     }
     exact = row_of_blocks.solve(fourth(0.1, **changes))  # no step changes it
     errors, steps = [], []
