@@ -128,14 +128,15 @@ def write_csv(path: Path, table: pd.DataFrame, digits: int = 9) -> Path:
 
 
 def write_beside(path: Path, table: pd.DataFrame) -> list[Path]:
-    """Write a table as `write_csv` does; one with other rows that it replaces is kept as NAME-1.csv
-    (or -2, ...), which is then the second file returned."""
+    """Write a table as `write_csv` does. One with other rows that it replaces is kept, once, as
+    NAME-1.csv (or -2, ...), which is then the second file returned."""
     old = path.read_bytes() if path.is_file() else b""
     spare = next(x for k in count(1) if not (x := path.with_stem(f"{path.stem}-{k}")).exists())
-    if old:
+    kept = any(x.read_bytes() == old for x in path.parent.glob(f"{path.stem}-*{path.suffix}"))
+    if old and not kept:
         create(spare, old)
     write_csv(path, table)
-    if {*old.splitlines()} <= {*path.read_bytes().splitlines()}:
+    if kept or {*old.splitlines()} <= {*path.read_bytes().splitlines()}:
         spare.unlink(missing_ok=True)
         return [path]
     return [path, spare]

@@ -20,6 +20,7 @@ from jointwave.compare.studies.experiment import Summary
 from jointwave.compare.studies.sweep_keys import MEMBER
 from jointwave.results.netcdf import load_netcdf
 
+TABLES = ("sweep", "ensemble")
 PERCENTILES = (5, 25, 50, 75, 95)
 STATISTICS = ("mean", *(f"p{q}" for q in PERCENTILES))
 #: Columns that, with the swept keys, identify a row.
@@ -65,6 +66,8 @@ def summarise(scene: str, keys: list[str], out: Path | None, rows: pd.DataFrame)
         loud = done[done.faint == "false"].sort_values("misfit")
         shown = loud.drop_duplicates([*keys, "variant", by], keep="last").sort_index()
         legend = f"The worst waveform of each pair. {legend}"
+    if kept := [x.name for x in files if x.suffix == ".csv" and x.stem not in TABLES]:
+        legend += f" Kept from earlier commands: {', '.join(kept)}."
     points = failed.agg(lambda row: ", ".join(f"{key}={row[key]}" for key in keys), axis=1)
     return Summary(
         "sweep",

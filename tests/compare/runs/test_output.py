@@ -30,7 +30,10 @@ def test_a_table_of_other_rows_is_kept(tmp_path):
     before, kept = path.read_text(), []
     for peak in (1.0, 2.0):
         kept += write_beside(path, pd.DataFrame({"peak": [peak]}))[1:]
-    assert [file.name for file in kept] == ["sweep-1.csv", "sweep-2.csv"]
+    assert write_beside(path, misfits) == [path, path.with_stem("sweep-3")]
+    assert write_beside(path, pd.DataFrame({"peak": [2.0]})) == [path]  # sweep-1 holds it
+    kept.append(path.with_stem("sweep-3"))
+    assert [file.name for file in kept] == [f"sweep-{k}.csv" for k in (1, 2, 3)]
     assert kept[0].read_text() == before and set(tmp_path.iterdir()) == {path, *kept}
 
 
