@@ -91,11 +91,12 @@ def rigid_joints(
     return RigidJoints(normal, shear, excess.T, kinds, max(one.left_over for one in shares))
 
 
-def long_wave_stiffness(scene: RockMass, further: list[JointSet]) -> np.ndarray:
+def long_wave_stiffness(
+    scene: RockMass, further: list[JointSet], own: list[effective_medium.JointSet]
+) -> np.ndarray:
     """Return C (Pa) of long waves through rigid blocks outside all regions, in Voigt's form; very
-    large for strains to which no joint yields."""
+    large for strains to which no joint yields. own : the compliance of joints."""
     share, dim = rock_shares(scene, further)[-1], scene.domain.dimension
-    own = effective_medium.compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     excess = zip(share.normals, share.compliance, strict=True)
     sets = [*own, *(effective_medium.JointSet(n, *map(float, z)) for n, z in excess)]
     return effective_medium.joints_alone(sets, dim)

@@ -8,9 +8,10 @@ import numpy as np
 from jointwave.cases.errors import SceneError
 from jointwave.cases.geometry.cell_complex import NO_SET
 from jointwave.cases.geometry.measure import widths
+from jointwave.cases.material import effective_medium
 from jointwave.cases.material.rigid_blocks import rigid_joints
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import region_at, rocks_beside, rocks_of
+from jointwave.cases.partition.joints import region_at, rocks_beside, rocks_of, within
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.partition.scene import blocks_of_scene, partition_bytes
 from jointwave.cases.partition.shape import shape_of
@@ -66,6 +67,14 @@ def initial_stress(scene: RockMass, places: np.ndarray) -> np.ndarray:
         confined = side * np.eye(len(g)) + (1 - side) * np.outer(g, g)
         found += weight[:, None, None] * confined
     return found
+
+
+def sets_at_rest(scene: RockMass) -> list[effective_medium.JointSet]:
+    """Return the compliance of joint sets outside all regions, closed by the initial stress in the
+    middle of the domain."""
+    middle = np.mean(scene.domain.corners, axis=0)[None]
+    sets = within(scene, scene.joint_sets)[-1].joint_sets
+    return effective_medium.compliant(sets, initial_stress(scene, middle)[0])
 
 
 def refuse_beyond_strength(scene: AnyScene) -> None:

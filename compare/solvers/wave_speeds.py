@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from jointwave.cases.material.effective_medium import compliant, stiffness
 from jointwave.cases.material.effective_medium import speeds as speeds_of_medium
+from jointwave.cases.material.effective_medium import stiffness
 from jointwave.cases.material.rigid_blocks import long_wave_stiffness
 from jointwave.cases.material.rock import elastic_rock
-from jointwave.cases.partition.joints import within
+from jointwave.cases.material.rock_mass import sets_at_rest
 from jointwave.cases.partition.lattice import further_sets
 from jointwave.cases.schema.rock_mass import RockMass
 from jointwave.compare.solvers.record import Rock
@@ -18,13 +18,13 @@ Speeds = dict[str, tuple[float, float]]
 
 
 def speeds(scene: RockMass, resolved: Rock) -> Speeds:
-    """Return wave speeds outside all regions of rock, as an engine resolves it. Long waves have
-    wavelengths that are large compared with the blocks."""
+    """Return wave speeds outside all regions of rock, as an engine resolves it, between joints that
+    the initial stress has closed. Long waves are long compared with the blocks."""
+    sets = sets_at_rest(scene)
     if resolved is Rock.RIGID_BLOCKS:
-        return _along_axes(long_wave_stiffness(scene, further_sets(scene)), scene)
+        return _along_axes(long_wave_stiffness(scene, further_sets(scene), sets), scene)
     rock = elastic_rock(scene.rock)
     dim = scene.domain.dimension
-    sets = compliant(within(scene, scene.joint_sets)[-1].joint_sets)
     found = _along_axes(stiffness(rock, sets, dim), scene) if sets else {}
     if resolved is Rock.JOINTED or not sets:
         found["intact rock"] = float(rock.p_speed), float(rock.s_speed)

@@ -53,14 +53,19 @@ def test_the_rock_of_a_pillar_is_the_exact_bar_in_every_dimension(column, rock, 
     assert jw.misfit(found, jw.simulate(scene, f"{rock}-bar")) < 1e-3
 
 
-def test_explain_prints_the_speeds_of_a_rock_mass(jointwave, tmp_path, in_toml):
+@pytest.mark.parametrize("stress", [0.0, 1e6])
+def test_explain_prints_the_speeds_of_a_rock_mass(jointwave, tmp_path, in_toml, stress):
     """lambda = mu = 1 GPa, rho = 1000: sqrt(3) and 1 km/s between the joints. Two orthogonal sets
     of K_n = 2, K_s = 1 GPa/m, 1 m apart: 1.08012 and 0.57735 km/s along x and y (Schoenberg and
     Sayers 1995). Rigid blocks have no Poisson effect: 1 / C_11 = 1/3 + 1/2 gives sqrt(1.2) =
-    1.09545 km/s, and both sets slip, 1 / C_66 = 1 + 1 + 1."""
+    1.09545 km/s, and both sets slip, 1 / C_66 = 1 + 1 + 1. The same joints, of 0.5 GPa/m when open,
+    are closed by K d_m: they are (1 + 1)^2 times as stiff."""
     law = {"spacing": 1.0, "normal_stiffness": 2e9, "shear_stiffness": 1e9}
+    if stress:
+        law |= {"normal_stiffness": 5e8, "maximum_closure": stress / 5e8}
     tables = mass(
         *(4.0, 4.0),
+        prestress={"xx": stress, "yy": stress},
         rock={"density": 1000.0, "intact_modulus": 2.5e9, "intact_poisson": 0.25},
         joint_sets=[law | {"name": str(dip), "dip": dip} for dip in (0.0, 90.0)],
         time={"duration": 0.1},
