@@ -90,7 +90,8 @@ def load(scene: AnySource, variant: str = "", changes: dict[str, Any] | None = N
 def properties(scene: AnySource) -> "Properties":
     """Return the calibrated stiffnesses, wave speeds, impedance and joint damping of a pillar.
 
-    Raises SceneError for a rock mass.
+    Joints that stiffen have their initial stiffness; `at_start.at_rest` and `at_end.at_rest` are
+    the rock whose joints the prestress has closed. Raises SceneError for a rock mass.
     """
     from jointwave.cases.material.calibrate import calibrate
 
