@@ -120,6 +120,8 @@ def test_no_bound_is_met_at_rest(run):
     result = run(scene=text + '"dem ~ no-tension-chain" = 1.0\n')
     result.assert_outcomes(failed=2)
     result.stdout.fnmatch_lines(2 * ["* ~ *: nothing moves at the receivers in either solution"])
+    text = text.replace("stress = [2.0]", "stress = [2.0]\nvelocity = [0.25]")
+    run(scene=text.replace("= 1.0\n", "= 0.01\n")).assert_outcomes(passed=1)
 
 
 def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):

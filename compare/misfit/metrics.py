@@ -128,10 +128,11 @@ def pairings(one: xr.Dataset, other: xr.Dataset) -> list[Worst]:
     moved = max((size for quantity, size in sizes if quantity in UNITS[1] + UNITS[3]), default=0.0)
     held = waveforms(static_state(other)) if _has_static_state(other) else {}
     still = [abs(float(v[0])) for place, v in held.items() if place.quantity in UNITS[0]]
-    if SOFT * moved < EXCITED * (load := other.attrs.get("peak_load", 0.0)):
-        still.append(load)  # else pieces fly off or turn, without stress
-    if changed and max(changed) < EXCITED * max(still, default=0.0):
-        return []
+    least, load = max(still, default=0.0), other.attrs.get("peak_load", 0.0)
+    if changed and max(changed) < EXCITED * max(least, load):
+        if max(changed) < EXCITED * least or SOFT * moved < EXCITED * load:
+            return []
+        found = [one for one in found if one[0].quantity not in UNITS[0]]  # pieces that fly off
     weight = weigh([place for place, *_ in found], np.array([rms(b) for *_, b in found]))
     kept, errors = [], waveforms(other, "_error")
     for (place, a, b), norm, least, excited in zip(
