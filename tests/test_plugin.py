@@ -113,15 +113,11 @@ def test_a_bound_of_one_quantity_or_peak(run, of, bound, says):
 
 
 def test_no_bound_is_met_at_rest(run):
-    """A block that the load pulls off a pillar without tension leaves nothing to compare: zero in
-    the exact chain, a millionth of the load in jointed rock."""
-    text = scene("dem ~ continuum-jointed").replace("s_speed", "intact_modulus = 8.64e10\ns_speed")
-    text = text.replace("[load]", "[joints]\ntension = false\n[load]").replace("1.0e6", "-1.0e6")
-    result = run(scene=text + '"dem ~ no-tension-chain" = 1.0\n')
-    result.assert_outcomes(failed=2)
-    result.stdout.fnmatch_lines(2 * ["* ~ *: nothing moves at the receivers in either solution"])
-    text = text.replace("stress = [2.0]", "stress = [2.0]\nvelocity = [0.25]")
-    run(scene=text.replace("= 1.0\n", "= 0.01\n")).assert_outcomes(passed=1)
+    """A block that the load pulls off a pillar without tension leaves nothing to compare."""
+    text = scene("dem ~ no-tension-chain").replace("amplitude = 1.0e6", "amplitude = -1.0e6")
+    result = run(scene=text.replace("[load]", "[joints]\ntension = false\n[load]"))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["* ~ *: nothing moves at the receivers in either solution"])
 
 
 def test_a_scene_is_warned_of_and_refused_where_warnings_are_errors(run):

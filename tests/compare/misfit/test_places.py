@@ -6,7 +6,7 @@ import pytest
 from jointwave.cases.read import load_tables
 from jointwave.compare.exact.blocks import row_of_blocks
 from jointwave.compare.misfit.external import read_curves
-from jointwave.compare.misfit.metrics import pairings, rms, worst
+from jointwave.compare.misfit.metrics import Worst, pairings, rms, worst
 from jointwave.compare.misfit.pairs import measure
 from jointwave.compare.misfit.places import Place, parsed, places_of
 from jointwave.results.dataset import dataset
@@ -109,6 +109,18 @@ def test_where_a_pillar_only_turns_round_off_of_all_else_decides_nothing(pillar)
         noisy[name] = noisy[name] + size * np.sin(1e3 * noisy.time)
     far = worst(turns * 1.01, noisy)
     assert far.misfit == pytest.approx(0.01) and far.place.quantity == "rotation"
+
+
+def test_stress_below_a_millionth_of_the_load_does_not_decide_where_a_block_flies_off(pillar):
+    """The load pulls it off; behind it the exact stress is 0, and 1 Pa of noise was 100 % off."""
+    keys = {"joints__tension": False, "load__amplitude": -1e6, "time__duration": 0.01}
+    record = {"stress": [20.0], "velocity": [0.25]}
+    flies = row_of_blocks.solve(pillar(record=record, **keys))
+    noisy = flies.assign(stress=flies.stress + np.sin(1e3 * flies.time))
+    assert worst(flies, noisy).misfit == 0.0 and worst(1.01 * flies, noisy).place.at == (0.25,)
+    assert worst(flies, flies.assign(stress=noisy.stress * 10)).misfit == pytest.approx(1.0)
+    still = noisy.drop_vars(("velocity", "displacement"))
+    assert worst(flies, still) == Worst(0.0)
 
 
 def test_quantities_of_one_unit_are_judged_together():
