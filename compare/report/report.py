@@ -4,10 +4,11 @@ import logging
 import platform
 import shlex
 from base64 import b64encode
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib.metadata import version
+from operator import call
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,7 +29,7 @@ from jointwave.compare.report.scenes import (
     solve,
 )
 from jointwave.compare.report.scenes import planned as planned_of_scene
-from jointwave.compare.report.sections import DIAGRAMS, sections
+from jointwave.compare.report.sections import DIAGRAMS, MOVING, sections
 from jointwave.compare.report.sections import planned as planned_of_sections
 from jointwave.compare.runs.output import write_text
 from jointwave.compare.runs.reuse import NOWHERE, ResultFolder
@@ -76,13 +77,16 @@ def build(
     tell, out, pool = progress or (lambda fraction: None), Path(out), partial(in_processes, workers)
     work = partial(solve, folder=out / "figures", stored=stored)
     requests, part, rock, studies = asked_for(scenes), 1.0, list[SolvedScene](), []
+    moving = dict[str, Callable[[], Any]]()
     if not scenes:
         others, part = peers.read(peers_table), SCENES
         requests += asked_for(ROCK_MASSES)
-    solved = _solve(work, requests, pool, lambda x: tell(part * x))
+        moving = {name: partial(make, out) for name, make in MOVING.items()}
+    solved, shown = _solve(work, requests, moving, pool, lambda x: tell(part * x))
     title = solved[0].scene.title if len(solved) == 1 else f"{len(solved)} scenes"
     if not scenes:
-        studies = [*sections(out, pool, hard, others, lambda x: tell(part + (1 - part) * x))]
+        made = sections(out, pool, hard, others, lambda x: tell(part + (1 - part) * x))
+        studies = [*made, *shown]
         solved, rock, title = solved[: -len(ROCK_MASSES)], solved[-len(ROCK_MASSES) :], PAPERS
     command = shlex.join(["jointwave", "report", *dict.fromkeys(scenes), "--out", "DIR"])
     page = _page(title, command, solved, rock, studies)
@@ -105,30 +109,34 @@ def planned(
 def _solve(
     work: Callable[[SceneRequest], SolvedScene],
     requests: list[SceneRequest],
+    others: Mapping[str, Callable[[], Any]],
     pool: Pool,
     progress: Progress,
-) -> list[SolvedScene]:
-    """Return the scenes, solved and drawn in parallel; short runs are then timed again alone."""
-    found: dict[str, SolvedScene] = {}
-    # Scenes with most variants first, so that all processes end at nearly the same time.
+) -> tuple[list[SolvedScene], list[Any]]:
+    """Return the scenes, solved and drawn in parallel, and the results of other functions; short
+    runs are then timed again alone."""
+    found = dict[str, Any]()
+    # The others, and scenes with most variants, first: all processes end at nearly the same time.
     ordered = sorted(requests, key=lambda one: -len(load_variants(one.file)))
-    for name, one in pool(work, {one.name: one for one in ordered}):
+    tasks = {**others, **{one.name: partial(work, one) for one in ordered}}
+    for name, one in pool(call, tasks):
         if one is None:
             raise MemoryError(f"scene {name}: {DIED}")
         found[name] = one
-        progress(len(found) / len(requests))
-    if read := {one.request.file.stem: one.read for one in found.values() if one.read}:
+        progress(len(found) / len(tasks))
+    solved = [found[one.name] for one in requests]
+    if read := {one.request.file.stem: one.read for one in solved if one.read}:
         took = [seconds for each in read.values() for seconds in each]
         said = f"{len(took)} results of {', '.join(read)}, computed in {sum(took):.2g} s"
         log.info("reads %s; --fresh computes anew", said)
     with alone():
-        for one in found.values():
+        for one in solved:
             for name, taken in one.seconds.items():
                 with suppress(*FAILURES):  # an engine may solve only another variant
                     if taken <= LONG:
                         again = engines.solve(name, one.scene).attrs["seconds_stepping"]
                         one.seconds[name] = min(taken, again)
-    return [found[one.name] for one in requests]
+    return solved, [found[name] for name in others]
 
 
 def _page(
