@@ -62,6 +62,7 @@ from jointwave.dem.kernel.motion import (
 from jointwave.dem.kernel.relative import onto_blocks_for, relative_for
 from jointwave.dem.kernel.rotation import dot, three
 from jointwave.dem.kernel.row import row_forces_for
+from jointwave.dem.kernel.sharing import of_motion, shared
 from jointwave.dem.kernel.tractions import face_forces_for, point_forces_for
 from jointwave.joints.formula import formula
 from jointwave.joints.law import rows_of
@@ -116,6 +117,7 @@ def rates_for(form: KernelFlags) -> tuple[Callable, Callable, Callable]:
     return difference_rates, extrapolate, account_drags
 
 
+@shared(of_motion)
 def records_for(form: KernelFlags) -> tuple[Callable, Callable]:
     """Return the kernels that sample watched contacts and recorded blocks."""
     dim, freedoms, recorded, finite = form.dim, form.freedoms, form.recorded, form.finite

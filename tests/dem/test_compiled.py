@@ -6,7 +6,7 @@ from itertools import product
 import pytest
 
 from jointwave.dem import simulate
-from jointwave.dem.kernel import leapfrog, motion, relative, tractions
+from jointwave.dem.kernel import leapfrog, loop, motion, relative, tractions
 from jointwave.dem.kernel.model import KernelFlags
 from jointwave.joints.law import LawFlags
 from tests.rocks import rock
@@ -91,7 +91,9 @@ def test_absent_effects_leave_no_array(kernel):
 
 
 def constants(formula):
-    """Return the variables of a formula's closure, and of those that it calls."""
+    """Return the variables of the closure of each formula, and of those that it calls."""
+    if isinstance(formula, tuple):
+        return [*map(constants, formula)]
     own = getclosurevars(formula).nonlocals.items()
     return {name: constants(one) if isfunction(one) else one for name, one in own}
 
@@ -100,7 +102,7 @@ def constants(formula):
     "factory",
     [
         motion.motion_for, relative.relative_for, relative.onto_blocks_for,
-        tractions.point_forces_for, tractions.face_forces_for,
+        tractions.point_forces_for, tractions.face_forces_for, loop.records_for,
     ],
 )  # fmt: skip
 def test_shared_formulas_are_those_of_each_kernel(factory):
