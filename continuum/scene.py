@@ -1,11 +1,9 @@
 """The body of a scene: a rock mass in the plane or in space, or a pillar."""
 
-import pickle
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -113,14 +111,24 @@ def _built(
     return elements.body(materials.rock_of_cells(elements.space, own, of_cell)), of_cell
 
 
-_build = ContextVar("_build", default=_built)
+_build = ContextVar[Callable[..., tuple[Body, np.ndarray]]]("_build", default=_built)
 
 
 @contextmanager
 def bodies_kept() -> Iterator[None]:
     """Let runs of equal rock and elements share a body, which is built, and warned of, once."""
-    kept = lru_cache(KEPT)(lambda parts: _built(*pickle.loads(parts)))
-    before = _build.set(lambda *parts: kept(pickle.dumps(parts)))
+    import joblib
+
+    kept = dict[str, tuple[Body, np.ndarray]]()
+
+    def build(*parts: Any) -> tuple[Body, np.ndarray]:
+        if (key := joblib.hash(parts)) not in kept:
+            if len(kept) == KEPT:
+                kept.pop(next(iter(kept)))
+            kept[key] = _built(*parts)
+        return kept[key]
+
+    before = _build.set(build)
     try:
         yield
     finally:
