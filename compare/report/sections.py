@@ -124,8 +124,9 @@ def film(out: Path) -> dict[str, Any]:
     images = (frame.image(i) for i in range(FRAMES))
     file = write_video(out / "figures" / "sliding-joint.gif", images, PIXELS, RATE)
     note = (
-        "The wave moves rock along no axis. The joint passes the shear that friction can carry and "
-        "slips under the rest: rock above it moves less, and what does not pass is reflected."
+        "The wave comes from below and moves the rock oblique to both horizontal axes. The joint "
+        "passes the shear that friction can carry and slips under the rest: the rock above moves "
+        "less, and what does not pass is reflected."
     )
     table = pd.DataFrame()
     about = Summary("film", scene.title, table, apart, (), [file], note=note)

@@ -35,6 +35,7 @@ CANCELS = "×"
 ERRORS = {"numerical": "numerical error (own model)", "total": "numerical + modelling error"}
 COSTS = {"seconds": "seconds of stepping", "work": "degrees of freedom x force evaluations"}
 MARKERS = "os^vDPX*<>hpd8H"
+NEAR = 100.0  # smallest error of a panel that shows the error of its references, over that
 LEGEND = (
     "Points are ranked by the sum: numerical error, modelling error, and the possible errors of "
     "the references. Measured is the misfit from the finest physics; it does not count where "
@@ -171,7 +172,8 @@ def _draw_panel(ax: Axes, table: pd.DataFrame, error: str, cost: str, name: str)
     if len(crossed):
         words = "errors cancel, or a finer point is worse: excluded"
         ax.plot(crossed[cost], crossed[shown], "x", color="#c0392b", markersize=6, label=words)
-    if least := floor(table, error):
+    least = floor(table, error)
+    if least and points[error].min() < NEAR * least:  # else most of the panel would be empty
         ax.axhspan(0, least, color="#f2f2f2", zorder=0, label="fine runs differ")
     ax.margins(x=0.04)  # so that no marker is cut
     ax.xaxis.set_minor_formatter(NullFormatter())
